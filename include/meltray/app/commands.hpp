@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The commands of the program; each returns an exit code of the contract or throws one of core/errors.hpp.
+namespace meltray::app {
+
+struct RunArguments {
+  std::filesystem::path case_file;
+  std::optional<std::filesystem::path> out;
+  bool overwrite = false;
+  std::vector<std::string> set;
+  std::optional<double> until;
+  int threads = 0;  ///< 0: all cores
+  bool quiet = false;
+};
+
+struct ResumeArguments {
+  std::filesystem::path run_folder;
+  std::optional<double> until;
+  std::vector<std::string> set;
+  std::optional<std::filesystem::path> out;
+  int threads = 0;
+  bool quiet = false;
+};
+
+struct ValidateArguments {
+  std::vector<std::string> ids;
+  bool all = false, list = false, small = false;  ///< small: the seconds-long twins that ./dev test runs
+  std::optional<std::filesystem::path> json;
+};
+
+int run(const RunArguments& arguments);
+int resume(const ResumeArguments& arguments);
+int check(const std::filesystem::path& case_file, const std::vector<std::string>& set);
+int list(const std::string& what);  ///< "", "cases", "materials", "terms", "methods" or "kernels"
+int validate(const ValidateArguments& arguments);
+int plot(const std::vector<std::filesystem::path>& run_folders);
+int compare(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& measured);
+
+}  // namespace meltray::app

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace meltray {
+
+/// Number of threads of every parallel loop (set once at start; results do not depend on it).
+inline void set_threads(int n) { omp_set_num_threads(n); }
+inline int threads() { return omp_get_max_threads(); }
+
+/// Below this many items a parallel region costs more than it gains.
+inline constexpr std::ptrdiff_t kSerialBelow = 512;
+
+/// Calls f(i) for i in [0, n). f writes only to places owned by i, so the result is the same with any number
+/// of threads.
+template <class F>
+void parallel_for(std::ptrdiff_t n, F&& f) {
+  if (n < kSerialBelow) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+    return;
+  }
+#pragma omp parallel for schedule(static, 64)
+  for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+}
+
+/// Reductions run over fixed blocks that are combined in order: bitwise independent of the number of threads.
+inline constexpr std::ptrdiff_t kReductionBlock = 1024;
+
+/// Reduces block results `block(begin, end)` with `combine(total, part)` in fixed order.
+template <class T, class Block, class Combine>
+T parallel_reduce(std::ptrdiff_t n, T init, Block&& block, Combine&& combine) {
+  const std::ptrdiff_t blocks = (n + kReductionBlock - 1) / kReductionBlock;
+  if (blocks <= 1) return n > 0 ? combine(init, block(std::ptrdiff_t{0}, n)) : init;
+  thread_local std::vector<T> parts;
+  parts.assign(static_cast<std::size_t>(blocks), init);
+  T* part = parts.data();
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t b = 0; b < blocks; ++b)
+    part[b] = block(b * kReductionBlock, std::min(n, (b + 1) * kReductionBlock));
+  T total = init;
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) total = combine(total, part[b]);
+  return total;
+}
+
+/// Sum of f(i) over [0, n).
+template <class F>
+double parallel_sum(std::ptrdiff_t n, F&& f) {
+  return parallel_reduce(
+      n, 0.0,
+      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        double s = 0;
+#pragma omp simd reduction(+ : s)
+        for (std::ptrdiff_t i = begin; i < end; ++i) s += f(i);
+        return s;
+      },
+      [](double a, double b) { return a + b; });
+}
+
+/// Largest f(i) over [0, n), or `floor` where that is larger.
+template <class F>
+double parallel_max(std::ptrdiff_t n, double floor, F&& f) {
+  return parallel_reduce(
+      n, floor,
+      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        double m = floor;
+        for (std::ptrdiff_t i = begin; i < end; ++i) m = std::max(m, f(i));
+        return m;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+}  // namespace meltray

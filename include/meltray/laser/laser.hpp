@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "meltray/core/vec.hpp"
+#include "meltray/laser/beam.hpp"
+
+namespace meltray::laser {
+
+/// Fresnel absorptance A = 1 - (R_s + R_p)/2 and its parts, for a metal of index m = n + ik in vacuum.
+/// `cosine` of the angle to the normal is clamped to [0, 1].
+struct Reflectance {
+  double s, p;
+};
+Reflectance fresnel(std::complex<double> index, double cosine);
+double absorptance(std::complex<double> index, double cosine);
+
+/// Triangles of a surface, normals pointing out of the metal.
+struct SurfaceMesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<Vec3> normals;             ///< smooth unit normal per vertex
+  std::vector<std::uint8_t> liquid;      ///< per vertex: 1 where the nearest metal is liquid
+};
+
+/// Particles near the beam: `position` has `size` entries [m], each of the given spacing.
+struct PointCloud {
+  ConstField position{};
+  std::size_t size = 0;
+  const std::uint8_t* liquid = nullptr;  ///< 1 = liquid
+  double spacing = 0;                    ///< [m]
+};
+
+struct Box {
+  Vec3 min, max;
+};
+
+/// Isosurface (one half) of the Shepard-smoothed indicator of the cloud inside `region`, as a triangle mesh on
+/// a grid of about the particle spacing, with normals from the gradient of the smoothed field. Vertices are
+/// finite; slivers are dropped. The mesh is open where the metal leaves the region.
+SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region);
+
+enum class Polarisation { averaged, tracked };
+
+struct TraceOptions {
+  int rays = 2000;
+  Polarisation polarisation = Polarisation::averaged;
+  std::optional<double> fixed_absorptance;   ///< replaces Fresnel when set
+  std::complex<double> index_solid{1, 0}, index_liquid{1, 0};
+  double end_fraction = 1e-4;    ///< a ray ends below this share of its own start power (residual deposited)
+  int max_bounces = 1000;
+  bool diffuse = false;          ///< Lambertian instead of mirror reflection (test mode for Gouffe's cavity)
+  std::array<double, 2> polarisation_xy{1, 0};  ///< of the incoming beam, in its cross-section (tracked only)
+};
+
+/// One absorption event on the surface.
+struct Hit {
+  Vec3 position;
+  double power;  ///< absorbed there [W]
+};
+
+/// in = absorbed + escaped + residual + dropped to round-off. `residual` is what rays carried when they ended
+/// by end_fraction or max_bounces; it is deposited at their last hit and NOT contained in `absorbed`.
+struct Ledger {
+  double in = 0, absorbed = 0, escaped = 0, residual = 0, dropped = 0;  ///< [W]
+  std::int64_t rays = 0, bounces = 0, dropped_rays = 0;
+};
+
+struct Trace {
+  std::vector<Hit> hits;      ///< absorbed and residual power
+  Ledger ledger;
+};
+
+/// Ray tracer on an Embree scene. Deterministic: rays are traced in parallel and gathered in ray order.
+/// Non-finite rays and rays from degenerate triangles are dropped and counted, never handed to Embree.
+class Tracer {
+ public:
+  Tracer();
+  ~Tracer();
+  Tracer(Tracer&&) noexcept;
+  Tracer& operator=(Tracer&&) noexcept;
+
+  /// Builds the BVH. An empty mesh is allowed: every ray then escapes.
+  void set_mesh(SurfaceMesh mesh);
+  const SurfaceMesh& mesh() const;
+  Trace trace(std::span<const Ray> rays, const TraceOptions& options) const;
+  /// Closest hit of a ray, for depths and pictures; nothing if it misses.
+  std::optional<Vec3> first_hit(const Ray& ray) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Spreads each hit over the surface particles within `radius` of it, weighted by the Wendland-shaped
+/// (1 - r/radius)^2 and by `weight` (0 = not on the surface); a hit without any goes to the nearest particle of
+/// positive weight, or, if there is none in the cloud, is returned as undeposited. Adds to `power` [W] per cloud entry.
+/// Returns the undeposited power [W].
+double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double* weight, double radius,
+               double* power);
+
+}  // namespace meltray::laser
