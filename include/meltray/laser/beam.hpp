@@ -16,20 +16,20 @@ enum class Tilt { leading, trailing };
 /// Description of the beam, SI units, angles in degrees where the name says so.
 struct BeamSpec {
   Modulation modulation = Modulation::constant;
-  double power = 0;               ///< constant power, or mean of the sine [W]
-  double amplitude = 0;           ///< of the sine [W]
-  double frequency = 0;           ///< of the sine [Hz]
-  double phase_deg = 0;           ///< P(t) = power + amplitude sin(2 pi f t + phase)
+  double power = 0;                              ///< constant power, or mean of the sine [W]
+  double amplitude = 0;                          ///< of the sine [W]
+  double frequency = 0;                          ///< of the sine [Hz]
+  double phase_deg = 0;                          ///< P(t) = power + amplitude sin(2 pi f t + phase)
   std::vector<std::pair<double, double>> table;  ///< (time s, power W), linear in between, end values held
   double on_time = 0, off_time = 1e300;          ///< the beam is dark outside [on_time, off_time) [s]
   Profile profile = Profile::gaussian;
-  double focal_diameter = 2e-4;   ///< at 1/e^2 of the intensity (gaussian) or full width (top-hat) [m]
-  double focus_z = 0;             ///< height of the focal plane [m]; the workpiece top is z = 0
-  double rayleigh_length = 1e300; ///< [m]; 1e300: no divergence
-  double incidence_deg = 0;       ///< angle between the axis and the vertical, in the x-z plane
-  Tilt tilt = Tilt::leading;      ///< leading: the beam points along the feed as it goes down
-  double start_x = 0, start_y = 0;///< where the axis meets z = focus_z at t = 0 [m]
-  double feed = 0;                ///< speed along +x [m/s]
+  double focal_diameter = 2e-4;     ///< at 1/e^2 of the intensity (gaussian) or full width (top-hat) [m]
+  double focus_z = 0;               ///< height of the focal plane [m]; the workpiece top is z = 0
+  double rayleigh_length = 1e300;   ///< [m]; 1e300: no divergence
+  double incidence_deg = 0;         ///< angle between the axis and the vertical, in the x-z plane
+  Tilt tilt = Tilt::leading;        ///< leading: the beam points along the feed as it goes down
+  double start_x = 0, start_y = 0;  ///< where the axis meets z = focus_z at t = 0 [m]
+  double feed = 0;                  ///< speed along +x [m/s]
 };
 
 struct Ray {
@@ -41,11 +41,12 @@ struct Ray {
 /// Power over time and the rays that carry it.
 class Beam {
  public:
+  /// Throws UsageError where the description makes no beam (no spot, level or upward rays, bad table).
   explicit Beam(BeamSpec spec);
   const BeamSpec& spec() const { return spec_; }
-  double power(double t) const;            ///< [W], never negative
-  Vec3 axis() const;                       ///< unit vector of propagation (downwards)
-  Vec3 focus(double t) const;              ///< where the axis meets the focal plane [m]
+  double power(double t) const;                     ///< [W], never negative
+  Vec3 axis() const;                                ///< unit vector of propagation (downwards)
+  Vec3 focus(double t) const;                       ///< where the axis meets the focal plane [m]
   double radius(double distance_from_focus) const;  ///< beam radius at a distance along the axis [m]
   /// `count` rays of equal power power(t)/count, stratified over the profile by a low-discrepancy sequence
   /// (the same set every call), starting above z = start_height. Divergent beams get hyperboloid rays whose

@@ -26,8 +26,8 @@ double absorptance(std::complex<double> index, double cosine);
 struct SurfaceMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::int32_t, 3>> triangles;
-  std::vector<Vec3> normals;             ///< smooth unit normal per vertex
-  std::vector<std::uint8_t> liquid;      ///< per vertex: 1 where the nearest metal is liquid
+  std::vector<Vec3> normals;         ///< smooth unit normal per vertex
+  std::vector<std::uint8_t> liquid;  ///< per vertex: 1 where the nearest metal is liquid
 };
 
 /// Particles near the beam: `position` has `size` entries [m], each of the given spacing.
@@ -42,9 +42,12 @@ struct Box {
   Vec3 min, max;
 };
 
-/// Isosurface (one half) of the Shepard-smoothed indicator of the cloud inside `region`, as a triangle mesh on
-/// a grid of about the particle spacing, with normals from the gradient of the smoothed field. Vertices are
-/// finite; slivers are dropped. The mesh is open where the metal leaves the region.
+/// Isosurface (one half) of the smoothed volume fraction of the cloud inside `region`, as a triangle mesh on
+/// a grid of the particle spacing, with normals from the gradient of the field smoothed a little more.
+/// Vertices are finite; slivers are dropped. The mesh is open where the metal leaves the region: give
+/// particles up to four spacings outside, or none where the metal was cropped at a side or the bottom of the
+/// region (it is then continued by its mirror image). A free side of the metal must be more than a spacing
+/// inside the region. The top face is never taken for a crop. A particle on its own is too small to show.
 SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region);
 
 enum class Polarisation { averaged, tracked };
@@ -52,12 +55,14 @@ enum class Polarisation { averaged, tracked };
 struct TraceOptions {
   int rays = 2000;
   Polarisation polarisation = Polarisation::averaged;
-  std::optional<double> fixed_absorptance;   ///< replaces Fresnel when set
+  std::optional<double> fixed_absorptance;  ///< replaces Fresnel when set
   std::complex<double> index_solid{1, 0}, index_liquid{1, 0};
-  double end_fraction = 1e-4;    ///< a ray ends below this share of its own start power (residual deposited)
+  double end_fraction = 1e-4;  ///< a ray ends below this share of its own start power (residual deposited)
   int max_bounces = 1000;
-  bool diffuse = false;          ///< Lambertian instead of mirror reflection (test mode for Gouffe's cavity)
-  std::array<double, 2> polarisation_xy{1, 0};  ///< of the incoming beam, in its cross-section (tracked only)
+  bool diffuse = false;  ///< Lambertian instead of mirror reflection (test mode for Gouffe's cavity)
+  /// Tracked only: linear polarisation of the incoming beam in its cross-section, whose x is the world's x
+  /// made transverse; (0, 0): unpolarised light.
+  std::array<double, 2> polarisation_xy{1, 0};
 };
 
 /// One absorption event on the surface.
@@ -74,12 +79,14 @@ struct Ledger {
 };
 
 struct Trace {
-  std::vector<Hit> hits;      ///< absorbed and residual power
+  std::vector<Hit> hits;  ///< absorbed and residual power
   Ledger ledger;
 };
 
 /// Ray tracer on an Embree scene. Deterministic: rays are traced in parallel and gathered in ray order.
-/// Non-finite rays and rays from degenerate triangles are dropped and counted, never handed to Embree.
+/// Non-finite rays are dropped and counted, never handed to Embree; nor are degenerate triangles. A ray that
+/// meets a triangle from behind is in the metal (it came through the open rim) and is absorbed there. Without
+/// vertex normals those of the triangles are used, without liquid flags all metal is solid.
 class Tracer {
  public:
   Tracer();
@@ -87,7 +94,8 @@ class Tracer {
   Tracer(Tracer&&) noexcept;
   Tracer& operator=(Tracer&&) noexcept;
 
-  /// Builds the BVH. An empty mesh is allowed: every ray then escapes.
+  /// Builds the BVH. An empty mesh is allowed: every ray then escapes. Degenerate triangles are removed and
+  /// all are wound as their vertex normals ask; mesh() shows the result.
   void set_mesh(SurfaceMesh mesh);
   const SurfaceMesh& mesh() const;
   Trace trace(std::span<const Ray> rays, const TraceOptions& options) const;
@@ -99,10 +107,10 @@ class Tracer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Spreads each hit over the surface particles within `radius` of it, weighted by the Wendland-shaped
-/// (1 - r/radius)^2 and by `weight` (0 = not on the surface); a hit without any goes to the nearest particle of
-/// positive weight, or, if there is none in the cloud, is returned as undeposited. Adds to `power` [W] per cloud entry.
-/// Returns the undeposited power [W].
+/// Spreads each hit over the surface particles within `radius` of it, weighted by
+/// (1 - r/radius)^2 and by `weight` (0 = not on the surface); a hit without any goes to the nearest particle
+/// of positive weight, or, if there is none in the cloud, is returned as undeposited. Adds to `power` [W] per
+/// cloud entry. Returns the undeposited power [W].
 double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double* weight, double radius,
                double* power);
 

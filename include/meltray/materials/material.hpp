@@ -23,7 +23,9 @@ struct Property {
   double slope(double temperature) const;
 };
 
-inline Property constant(double value) { return {Property::Form::constant, value}; }
+inline Property constant(double value) {
+  return {Property::Form::constant, value};
+}
 inline Property linear(double value, double slope, double t_ref, double t_min = 0, double t_max = 1e9) {
   return {Property::Form::linear, value, slope, t_ref, t_min, t_max};
 }
@@ -34,25 +36,26 @@ inline Property andrade(double a, double b, double t_min, double t_max) {
 /// A pure metal or an effective set for an alloy. SI units; T in K.
 struct Material {
   std::string name;
-  double density = 0;                    ///< constant reference density of both phases (ISPH) [kg/m^3]
-  Property density_of_t;                 ///< liquid density rho_0(T) [kg/m^3]
+  double density = 0;     ///< constant reference density of both phases (ISPH) [kg/m^3]
+  Property density_of_t;  ///< liquid density rho_0(T) [kg/m^3]
   double heat_capacity_solid = 0, heat_capacity_liquid = 0;  ///< [J/(kg K)]
   Property conductivity_solid, conductivity_liquid;          ///< [W/(m K)]
-  double solidus = 0, liquidus = 0;      ///< melting band [K], solidus < liquidus
-  double latent_heat_fusion = 0;         ///< [J/kg]
-  double boiling_temperature = 0;        ///< at one standard atmosphere [K]
-  double latent_heat_vaporisation = 0;   ///< [J/kg]
-  double molar_mass = 0;                 ///< [kg/mol]
-  Property viscosity;                    ///< dynamic, of the liquid [Pa s]
-  Property surface_tension;              ///< before the floor [N/m]
-  double surface_tension_floor = 0;      ///< [N/m]; d sigma/dT is zero where it acts
-  double expansion = 0;                  ///< volumetric, of the liquid (Boussinesq) [1/K]
-  double expansion_reference = 0;        ///< T_0 of Eq. (8) [K]
-  double linear_expansion_solid = 0;     ///< [1/K]
+  double solidus = 0, liquidus = 0;                          ///< melting band [K], solidus < liquidus
+  double latent_heat_fusion = 0;                             ///< [J/kg]
+  double boiling_temperature = 0;                            ///< at one standard atmosphere [K]
+  double latent_heat_vaporisation = 0;                       ///< [J/kg]
+  double molar_mass = 0;                                     ///< [kg/mol]
+  Property viscosity;                                        ///< dynamic, of the liquid [Pa s]
+  Property surface_tension;                                  ///< before the floor [N/m]
+  double surface_tension_floor = 0;                          ///< [N/m]; d sigma/dT is zero where it acts
+  double expansion = 0;                                      ///< volumetric, of the liquid (Boussinesq) [1/K]
+  double expansion_reference = 0;                            ///< T_0 of Eq. (8) [K]
+  double linear_expansion_solid = 0;                         ///< [1/K]
   double youngs_modulus = 0, poisson_ratio = 0;
   double emissivity = 0;
-  double contact_angle_deg = 10;         ///< of the melt on its own solid
-  std::complex<double> index_solid{1, 0}, index_liquid{1, 0};  ///< n + ik at the laser wavelength
+  double contact_angle_deg = 10;  ///< of the melt on its own solid
+  /// n + ik at the laser wavelength; (1, 0) where none is known (see has_index()).
+  std::complex<double> index_solid{1, 0}, index_liquid{1, 0};
 
   /// Specific enthalpy: c_s T below the solidus, linear through the band with the latent heat, c_l above.
   double enthalpy(double temperature) const;
@@ -71,7 +74,10 @@ struct Material {
   /// Clausius-Clapeyron: p_0 exp[(L_v M/R)(1/T_b - 1/T)] [Pa].
   double saturation_pressure(double temperature) const;
   double saturation_pressure_slope(double temperature) const;  ///< d p_sat/dT [Pa/K]
-  double thermal_diffusivity_max() const;        ///< largest lambda/(rho c) of the two phases [m^2/s]
+  /// Largest lambda/(rho c) of the two phases, from room temperature to the boiling point [m^2/s].
+  double thermal_diffusivity_max() const;
+  /// False where no optical constants are known: a laser then needs a fixed absorptance.
+  bool has_index() const { return index_solid != 1.0 && index_liquid != 1.0; }
 };
 
 /// Names of the built-in materials, in the order `meltray list materials` shows them.

@@ -18,6 +18,9 @@ using Overrides = std::vector<std::string>;
 /// unknown. Paths inside a case file are relative to that file.
 Scene read_case(const std::filesystem::path& file, const Overrides& overrides = {});
 
+/// The title of a case file, without a check of the rest; empty where there is none (a base for `include`).
+std::string case_title(const std::filesystem::path& file);
+
 /// The scene as a case file with every key, defaults included; read_case() of the text gives the same scene.
 std::string write_case(const Scene& scene);
 

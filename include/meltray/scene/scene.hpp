@@ -47,7 +47,7 @@ struct Body {
 
 /// [domain]: box, particles, gravity.
 struct Domain {
-  int dimension = 3;                    ///< 2: the x-z plane
+  int dimension = 3;                    ///< 2: the x-z plane; vectors of the scene are then (x, z, 0)
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();
   double spacing = 0;                   ///< [m]
   double smoothing_ratio = 1.3;         ///< h / spacing

@@ -65,7 +65,9 @@ struct StepReport {
   double dt = 0;             ///< its length [s]
   double error = 0;          ///< weighted norm of the local error estimate (0 without error control)
   int rejected = 0;          ///< attempts thrown away before it
-  std::string_view limiter;  ///< what set dt: a StepLimit name, "error", "growth", "maximum", "output", "fixed"
+  /// What set dt: a StepLimit name, "error", "growth" (max_growth), "maximum", "output" (cut to end on t_stop),
+  /// "fixed", "initial", or "retry" (halved after NaN or a failed implicit solve).
+  std::string_view limiter;
 };
 
 struct IntegratorCounters {

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "meltray/core/parallel.hpp"
+#include "meltray/core/vec.hpp"
+#include "meltray/particles/patch.hpp"
+#include "meltray/sph/kernel.hpp"
+
+/// Pair loops. Terms see a pair only through `Pair` and `sum_row`, so that the layout of the list can change
+/// without touching them.
+namespace meltray::sph {
+
+/// Calls f(std::integral_constant<int, D>) for D = dim.
+template <class F>
+decltype(auto) with_dim(int dim, F&& f) {
+  return dim == 2 ? f(std::integral_constant<int, 2>{}) : f(std::integral_constant<int, 3>{});
+}
+
+/// Neighbour j of particle i with the geometry of the current stage: x_ij = x_i - x_j, W_ij, F_ij = W'/r.
+template <int D>
+struct Pair {
+  Index j;
+  std::array<double, D> x;
+  double w, f;
+  double r2() const {
+    double s = 0;
+    for (int c = 0; c < D; ++c) s += x[c] * x[c];
+    return s;
+  }
+};
+
+/// Neighbours of the rows that some term needs, with their geometry. The self pair is not in the list.
+class PairList {
+ public:
+  /// Finds the neighbours of liquid particles and of `extra` rows (1 per patch entry; empty: none), then of
+  /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
+  /// while particles move by less than half of it.
+  void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
+  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions.
+  void refresh(const Patch& patch, KernelType kernel);
+
+  Index rows() const { return static_cast<Index>(start_.size()) - 1; }
+  Index begin(Index i) const { return start_[i]; }
+  Index end(Index i) const { return start_[i + 1]; }
+  Index neighbour(Index k) const { return j_[k]; }
+  /// 1 for solid particles with a liquid neighbour: the walls of the melt.
+  const std::vector<std::uint8_t>& next_to_melt() const { return next_to_melt_; }
+  std::size_t bytes() const;
+  std::size_t pairs() const { return j_.size(); }
+
+  /// Sum over the neighbours of i of f(pair), an array of N doubles.
+  template <int D, int N, class F>
+  std::array<double, N> sum_row(Index i, F&& f) const {
+    static_assert(N >= 1 && N <= 6);
+    double s0 = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0;
+    const Index* const j = j_.data();
+    const double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
+    const double *const w = w_.data(), *const fr = f_.data();
+    const Index first = start_[i], last = start_[i + 1];
+#pragma omp simd reduction(+ : s0, s1, s2, s3, s4, s5)
+    for (Index k = first; k < last; ++k) {
+      Pair<D> p;
+      p.j = j[k];
+      p.x[0] = dx[0][k];
+      p.x[1] = dx[1][k];
+      if constexpr (D == 3) p.x[2] = dx[2][k];
+      p.w = w[k];
+      p.f = fr[k];
+      const std::array<double, N> s = f(p);
+      s0 += s[0];
+      if constexpr (N > 1) s1 += s[1];
+      if constexpr (N > 2) s2 += s[2];
+      if constexpr (N > 3) s3 += s[3];
+      if constexpr (N > 4) s4 += s[4];
+      if constexpr (N > 5) s5 += s[5];
+    }
+    const double all[6] = {s0, s1, s2, s3, s4, s5};
+    std::array<double, N> out;
+    for (int n = 0; n < N; ++n) out[n] = all[n];
+    return out;
+  }
+
+  /// Calls f(k, pair) for the neighbours of i; k is the position in the list.
+  template <int D, class F>
+  void for_row(Index i, F&& f) const {
+    for (Index k = start_[i]; k < start_[i + 1]; ++k) {
+      Pair<D> p;
+      p.j = j_[k];
+      for (int c = 0; c < D; ++c) p.x[c] = dx_[c][k];
+      p.w = w_[k];
+      p.f = f_[k];
+      f(k, p);
+    }
+  }
+
+ private:
+  struct Block {
+    std::vector<Index> row, count, entries;
+    std::vector<Index> candidate;
+    Components candidate_x;
+    std::vector<double> candidate_h, r2;
+  };
+  void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
+
+  int dim_ = 3;
+  std::array<double, 3> period_{};
+  std::vector<Index> start_{0}, j_;
+  Components dx_;
+  std::vector<double> w_, f_;
+  std::vector<std::uint8_t> next_to_melt_, wanted_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace meltray::sph

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "meltray/terms/term.hpp"
+
+namespace meltray::terms {
+
+/// Evaporation loss, part of q_r in paper Eq. (4): mass flux after Hertz, Knudsen and Langmuir,
+///   m'' = (1 - beta_r) p_sat(T) sqrt(M / (2 pi R T)) [kg/(m^2 s)], q = -L_v m'' per free-surface area,
+/// and radiation q = -eps sigma_SB (T^4 - T_a^4). Both act on the particle's own surface area and are local:
+/// they have no neighbours. The mass is counted, not removed.
+struct SurfaceLosses {
+  bool evaporation = false, radiation = false;
+  double coefficient = 0.82;          ///< 1 - beta_r
+  double ambient_temperature = 300;   ///< [K]
+
+  /// Mass flux [kg/(m^2 s)] and its derivative with respect to T.
+  double mass_flux(const Material& m, double temperature) const;
+  double mass_flux_slope(const Material& m, double temperature) const;
+  /// Adds to dh/dt and to the powers (as positive losses).
+  void add_heating(const Stage& stage, double* heating, Powers& powers) const;
+  /// d(power)/dT of each particle [W/K], <= 0, written to `slope` (one entry per patch particle).
+  void slope(const Stage& stage, double* slope) const;
+  /// Largest |d(dh/dt)/dh| [1/s].
+  double rate(const Stage& stage) const;
+};
+
+}  // namespace meltray::terms

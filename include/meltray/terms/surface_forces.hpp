@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "meltray/terms/term.hpp"
+
+namespace meltray::terms {
+
+/// Surface tension (normal part), continuum surface force: pressure jump sigma(T) kappa. The curvature of a
+/// particle is the least-squares slope of its neighbours' normals over their offsets in the tangent plane,
+///   kappa_i = (D-1) sum_j w_ij (n_j - n_i).t_ij / sum_j w_ij |t_ij|^2,
+/// which is exact where the normals are those of a sphere, unlike the usual sum over all offsets, which counts
+/// the offset along the normal as well (1.4 times too large on a thin band).
+struct SurfaceTension {
+  double ramp = 20;   ///< [K] above melting over which tension sets in, so that a fresh particle is not kicked
+  /// sigma_i kappa_i [Pa] of liquid surface particles, 0 elsewhere; one entry per patch particle.
+  void pressure(const Stage& stage, std::vector<double>& out) const;
+  double activation(const Stage& stage, Index i) const;
+};
+
+/// Wetting after Breinlinger et al. 2013: near the triple line the normal is turned towards
+///   n_tp = sin(theta) t_w - cos(theta) n_w,  t_w the part of n orthogonal to the wall normal n_w,
+/// over a ramp in the wall colour. Rewrites stage.normal of liquid surface particles.
+struct Wetting {
+  double contact_angle_deg = 10;
+  void turn_normals(Stage& stage) const;
+
+ private:
+  mutable Components turned_;
+};
+
+enum class RecoilOnset { smooth, cutoff, ambient };
+
+/// Recoil pressure p_r = C_r p_sat(T) of evaporating liquid (Anisimov 1968: C_r = 0.54), with a named onset:
+/// smooth = at all temperatures; cutoff = only above T_b; ambient = max(0, C_r p_sat - p_0).
+struct Recoil {
+  RecoilOnset onset = RecoilOnset::smooth;
+  double coefficient = 0.54;
+  double prescribed = 0, prescribed_ramp = 0;   ///< > 0: uniform pressure [Pa] reached after a linear start [s]
+  double pressure(const Material& m, double temperature, double t) const;
+};
+
+/// Replaces stage.surface_pressure by the average of `pressure` over the surface neighbours of each moving
+/// particle (weights surface_j W_ij), so that one overheated particle does not pull its neighbours apart.
+void average_surface_pressure(Stage& stage, const std::vector<double>& pressure);
+
+/// Marangoni stress as a body force: a = (d sigma/dT / rho) 2 |grad c| (I - n n) grad T, grad T renormalised.
+struct Marangoni {
+  void add_acceleration(const Stage& stage, const MutField& acceleration) const;
+};
+
+/// Gravity with the Boussinesq approximation, paper Eq. (8): a = g (1 - beta (T - T_0)); beta = 0: plain gravity.
+struct Buoyancy {
+  bool gravity = true, buoyant = false;
+  double g = 9.80665;   ///< [m/s^2], acts along -z
+  void add_acceleration(const Stage& stage, const MutField& acceleration) const;
+};
+
+}  // namespace meltray::terms

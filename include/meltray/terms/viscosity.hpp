@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "meltray/terms/term.hpp"
+
+namespace meltray::terms {
+
+/// Which viscous terms an operator contains.
+struct ViscousChoice {
+  bool physical = false, interface = false;
+  bool any() const { return physical || interface; }
+};
+
+struct InterfaceViscosityParameters {
+  double free = 1, solid = 1;      ///< alpha_LG at the free surface, alpha_SL at the solid
+  double reference_speed = 0;      ///< c [m/s]
+  double ramp = 50;                ///< [K] above melting over which alpha_SL fades out
+};
+
+/// Viscous accelerations a_i = (1/m_i) sum_j [c_ij v_ij' + d_ij (v_ij.x_ij) x_ij] with symmetric c, d <= 0, so
+/// that the operator -M is symmetric positive semi-definite and momentum is conserved between moving particles.
+///
+/// Physical viscosity, paper Eq. (3) second term in the form of Morris et al. 1997:
+///   c_ij = 2 V_i V_j mu_ij F_ij, mu_ij the harmonic mean, walls with the antisymmetric extrapolation of
+///   Morris 1997 (no slip).
+/// Interface viscosity, Meier et al. 2021: d_ij = alpha_ij V_i V_j rho h c F_ij / (r^2 + 0.01 h^2), for approach
+///   and separation, with alpha_i = |grad c_i| h alpha_LG + ramp(T_i) alpha_SL. The published form uses
+///   alpha_i alone; alpha_ij = (alpha_i + alpha_j)/2 is used here because it conserves momentum and makes the
+///   implicit operator symmetric.
+class ViscousOperator {
+ public:
+  /// Evaluates the coefficients at the stage's geometry, temperatures and surface.
+  void assemble(const Stage& stage, ViscousChoice choice, const InterfaceViscosityParameters& interface);
+  /// Adds accelerations of moving particles; `v` are velocities of all patch particles.
+  void add_acceleration(const Stage& stage, const ConstField& v, const MutField& acceleration) const;
+  /// Solves (I - gamma dA/dv) x = b for the moving particles: x and b have one entry per patch particle,
+  /// entries of resting ones are ignored; x holds the start vector. Returns iterations, or -1 without
+  /// convergence to `tolerance` (relative residual).
+  int solve(const Stage& stage, double gamma, const ConstField& b, const MutField& x, double tolerance,
+            int max_iterations) const;
+  /// Largest row sum of -A [1/s]: an explicit step is stable below about 2 / rate.
+  double rate(const Stage& stage) const;
+
+ private:
+  ViscousChoice choice_;
+  std::vector<double> c_, d_;     ///< per pair
+  std::vector<double> alpha_, mu_;
+  mutable Components r_, p_, ap_;
+  mutable std::vector<double> inverse_diagonal_;
+};
+
+}  // namespace meltray::terms

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/app/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <new>
+
+#include "meltray/app/commands.hpp"
+#include "meltray/core/errors.hpp"
+#include "meltray/observe/version.hpp"
+
+namespace meltray::app {
+namespace {
+
+/// Sub-commands fill their arguments and leave what is to be done in `command`.
+class CommandLine {
+ public:
+  explicit CommandLine(std::function<int()>& command) : command_(command) {
+    app_.require_subcommand(1);
+    app_.set_version_flag("--version", "meltray " + observe::version());
+    app_.footer(
+        "Exit codes: 0 done, 1 a validation failed, 2 usage or case file, 3 the run failed numerically,\n"
+        "4 input or output failed, 130/143 stopped by a signal (checkpoint written).");
+    add_run();
+    add_resume();
+    add_check();
+    add_validate();
+    add_plot();
+    add_compare();
+    add_list();
+  }
+
+  CLI::App& app() { return app_; }
+
+ private:
+  void add_run() {
+    auto* c = app_.add_subcommand("run", "Runs a case into a run folder");
+    c->add_option("CASE", run_.case_file, "Case file (TOML)")->required();
+    c->add_option("--out", run_.out, "Run folder [default: runs/<case>, then runs/<case>-002, ...]");
+    c->add_flag("--overwrite", run_.overwrite, "Replace a run in --out");
+    add_settings(c, run_.set);
+    c->add_option("--until", run_.until, "Stop at this time instead of the case's end [s]");
+    c->add_option("--threads", run_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->add_flag("--quiet", run_.quiet, "No progress");
+    c->callback([this] { command_ = [this] { return run(run_); }; });
+  }
+
+  void add_resume() {
+    auto* c = app_.add_subcommand("resume", "Goes on with a stopped run, or forks it with other settings");
+    c->add_option("RUNDIR", resume_.run_folder, "Run folder")->required();
+    c->add_option("--until", resume_.until, "Go on to this time [s]");
+    add_settings(c, resume_.set);
+    c->add_option("--out", resume_.out, "New folder of a fork");
+    c->add_option("--threads", resume_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->add_flag("--quiet", resume_.quiet, "No progress");
+    c->callback([this] { command_ = [this] { return resume(resume_); }; });
+  }
+
+  void add_check() {
+    auto* c = app_.add_subcommand("check", "Checks a case and tells what it would do, without running it");
+    c->add_option("CASE", run_.case_file, "Case file (TOML)")->required();
+    add_settings(c, run_.set);
+    c->callback([this] { command_ = [this] { return check(run_.case_file, run_.set); }; });
+  }
+
+  void add_validate() {
+    auto* c = app_.add_subcommand("validate", "Runs validation cases against their references");
+    c->add_option("ID", validate_.ids, "Validation cases");
+    c->add_flag("--all", validate_.all, "All of them");
+    c->add_flag("--list", validate_.list, "Only list them");
+    c->add_flag("--small", validate_.small, "The twins that take seconds");
+    c->add_option("--json", validate_.json, "Write the results to this file");
+    c->callback([this] { command_ = [this] { return validate(validate_); }; });
+  }
+
+  void add_plot() {
+    auto* c = app_.add_subcommand("plot", "Draws the pictures of one run or several, finished or not");
+    c->add_option("RUNDIR", folders_, "Run folders")->required();
+    c->callback([this] { command_ = [this] { return plot(folders_); }; });
+  }
+
+  void add_compare() {
+    auto* c = app_.add_subcommand("compare", "Compares simulated with measured depth ratios");
+    c->add_option("RUNDIR", folders_, "Run folders")->required();
+    c->add_option("--measured", measured_, "CSV of measurements")->required();
+    c->callback([this] { command_ = [this] { return compare(folders_, measured_); }; });
+  }
+
+  void add_list() {
+    auto* c = app_.add_subcommand("list", "Lists cases, materials, terms, methods or kernels");
+    c->add_option("WHAT", what_, "cases, materials, terms, methods or kernels");
+    c->callback([this] { command_ = [this] { return list(what_); }; });
+  }
+
+  /// One setting after each --set; never takes the arguments behind it.
+  static void add_settings(CLI::App* c, std::vector<std::string>& set) {
+    c->add_option("--set", set, "Overrides a key of the case: section.key=value (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+  }
+
+  std::function<int()>& command_;
+  CLI::App app_{"Meltray: laser beam welding with SPH", "meltray"};
+  RunArguments run_;
+  ResumeArguments resume_;
+  ValidateArguments validate_;
+  std::vector<std::filesystem::path> folders_;
+  std::filesystem::path measured_;
+  std::string what_;
+};
+
+int complain(int code, std::string_view text) {
+  std::fflush(stdout);
+  fmt::print(stderr, "meltray: {}\n", text);
+  return code;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  std::function<int()> command;
+  CommandLine line(command);
+  try {
+    line.app().parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return line.app().exit(e) == 0 ? kExitOk : kExitUsage;
+  }
+  try {
+    return command();
+  } catch (const UsageError& e) {
+    return complain(kExitUsage, e.what());
+  } catch (const NumericalFailure& e) {
+    return complain(kExitNumerical, e.what());
+  } catch (const IoError& e) {
+    return complain(kExitIo, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    return complain(kExitIo, e.what());
+  } catch (const std::bad_alloc&) {
+    return complain(kExitNumerical, "out of memory: fewer or coarser particles are needed");
+  } catch (const std::exception& e) {
+    return complain(kExitNumerical, fmt::format("internal error: {}", e.what()));
+  }
+}
+
+}  // namespace meltray::app

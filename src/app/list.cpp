@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "meltray/app/commands.hpp"
+#include "meltray/core/errors.hpp"
+#include "meltray/core/nearest.hpp"
+#include "meltray/materials/material.hpp"
+#include "meltray/scene/case_file.hpp"
+
+namespace meltray::app {
+
+namespace {
+
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+/// Case files in ./cases; a file without a title is a base that others include.
+Lines cases() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& item : fs::directory_iterator("cases", error))
+    if (item.path().extension() == ".toml") files.push_back(item.path());
+  std::sort(files.begin(), files.end());
+  Lines lines;
+  for (const fs::path& file : files) {
+    try {
+      if (const std::string title = scene::case_title(file); !title.empty())
+        lines.emplace_back(file.string(), title);
+    } catch (const UsageError& e) {
+      lines.emplace_back(file.string(), fmt::format("cannot be read: {}", e.what()));
+    }
+  }
+  if (lines.empty()) lines.emplace_back("(none)", "no case files in the folder ./cases");
+  return lines;
+}
+
+Lines materials() {
+  Lines lines;
+  for (const std::string& name : material_names()) lines.emplace_back(name, material_summary(name));
+  return lines;
+}
+
+/// Equations are those of the paper; "auto" is decided by the stiffness of the term and can be set in
+/// [splitting].
+Lines terms() {
+  return {
+      {"conduction", "Eq. (4), heat conduction; enthalpy; auto"},
+      {"viscosity", "Eq. (3), physical viscosity of the melt; velocity; auto"},
+      {"interface_viscosity", "sect. 2.2.2, viscosity at free surface and solid; velocity; auto"},
+      {"pressure",
+       "Eq. (6), incompressible projection; velocity; projected after each step (or in every stage)"},
+      {"surface_tension", "sect. 2.1, continuum surface force or surface pressure; velocity; explicit"},
+      {"marangoni", "sect. 2.1, force along the surface where tension changes with T; velocity; explicit"},
+      {"wetting", "sect. 2.1, contact angle on the solid; normal of the surface; explicit"},
+      {"recoil", "sect. 2.1, recoil pressure of the vapour; velocity; explicit"},
+      {"evaporation", "Eq. (4), q_r: heat lost with the vapour; enthalpy; auto"},
+      {"radiation", "Eq. (4), q_r: heat radiated; enthalpy; with evaporation"},
+      {"buoyancy", "Eq. (8), Boussinesq; velocity; explicit"},
+      {"gravity", "Eq. (3), a_g; velocity; explicit"},
+      {"melting", "sect. 2, melting and solidification; phase; between steps"},
+      {"[laser]",
+       "Eq. (4), q_s: traced rays with Fresnel absorption; enthalpy; explicit, frozen over a step"},
+  };
+}
+
+Lines methods() {
+  return {
+      {"imex", "implicit-explicit Runge-Kutta (ARKODE), order 2 to 5; the default, with order 2"},
+      {"explicit", "explicit Runge-Kutta (ARKODE), order 2 to 5"},
+      {"implicit", "diagonally implicit Runge-Kutta (ARKODE), order 2 to 5"},
+      {"euler", "forward-backward Euler, order 1: the classical scheme"},
+  };
+}
+
+Lines kernels() {
+  return {
+      {"wendland_c2", "Wendland C2, support of two smoothing lengths; the default"},
+      {"cubic_spline", "cubic spline, support of two smoothing lengths"},
+  };
+}
+
+void print(const Lines& lines) {
+  std::size_t width = 0;
+  for (const auto& [name, text] : lines) width = std::max(width, name.size());
+  for (const auto& [name, text] : lines) fmt::print("  {:<{}}  {}\n", name, width, text);
+}
+
+}  // namespace
+
+int list(const std::string& what) {
+  const std::vector<std::pair<std::string, Lines (*)()>> topics = {{"cases", cases},
+                                                                   {"materials", materials},
+                                                                   {"terms", terms},
+                                                                   {"methods", methods},
+                                                                   {"kernels", kernels}};
+  std::vector<std::string> names;
+  for (const auto& [name, lines] : topics) names.push_back(name);
+  if (!what.empty() && std::find(names.begin(), names.end(), what) == names.end())
+    throw UsageError(
+        fmt::format("list: found '{}'; allowed cases, materials, terms, methods, kernels; did you mean '{}'?",
+                    what, nearest_name(what, names)));
+  for (const auto& [name, lines] : topics) {
+    if (!what.empty() && what != name) continue;
+    fmt::print("{}\n", name);
+    print(lines());
+  }
+  return kExitOk;
+}
+
+}  // namespace meltray::app

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "laser/cell_grid.hpp"
+#include "meltray/core/errors.hpp"
+#include "meltray/laser/laser.hpp"
+
+namespace meltray::laser {
+namespace {
+
+constexpr std::size_t kNone = ~std::size_t{0};
+
+/// Index of the nearest point; of equally near ones the first.
+std::size_t nearest(const CellGrid& grid, const Vec3& x, double radius) {
+  const double reach = (x - grid.centre()).norm() + grid.diagonal();
+  for (;; radius *= 2) {
+    std::size_t best = kNone;
+    double best2 = std::numeric_limits<double>::infinity();
+    grid.near(x, radius, [&](std::size_t i, const Vec3& point) {
+      const double r2 = (point - x).squaredNorm();
+      if (r2 < best2 || (r2 == best2 && i < best)) {
+        best2 = r2;
+        best = i;
+      }
+    });
+    // A point beyond the radius may be beaten by one in a cell that was not looked at.
+    if (best != kNone && (best2 <= radius * radius || radius > reach)) return best;
+    if (radius > reach) return kNone;
+  }
+}
+
+}  // namespace
+
+double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double* weight, double radius,
+               double* power) {
+  if (!(radius > 0)) throw NumericalFailure("laser: the radius of the deposit must be positive");
+  std::vector<Vec3> points;
+  std::vector<std::size_t> particle;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    const Vec3 x(cloud.position[0][i], cloud.position[1][i], cloud.position[2][i]);
+    if (!(weight[i] > 0) || !x.allFinite()) continue;
+    points.push_back(x);
+    particle.push_back(i);
+  }
+  const CellGrid grid(points, 0.5 * radius);  // smaller cells fit the sphere more closely
+  double undeposited = 0;
+  // Serial and in the order of the hits: a few thousand hits cost well below a millisecond.
+  std::vector<std::pair<std::size_t, double>> shares;
+  for (const Hit& hit : hits) {
+    if (points.empty() || !hit.position.allFinite()) {
+      undeposited += hit.power;
+      continue;
+    }
+    shares.clear();
+    double sum = 0;
+    grid.near(hit.position, radius, [&](std::size_t i, const Vec3& point) {
+      const double r2 = (point - hit.position).squaredNorm();
+      if (r2 >= radius * radius) return;
+      const double fall = 1 - std::sqrt(r2) / radius;
+      shares.emplace_back(particle[i], weight[particle[i]] * fall * fall);
+      sum += shares.back().second;
+    });
+    if (sum > 0) {
+      for (const auto& [i, w] : shares) power[i] += hit.power * (w / sum);
+    } else {
+      power[particle[nearest(grid, hit.position, radius)]] += hit.power;
+    }
+  }
+  return undeposited;
+}
+
+}  // namespace meltray::laser

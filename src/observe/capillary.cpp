@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/observe/capillary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "meltray/core/constants.hpp"
+#include "meltray/observe/pool.hpp"
+
+namespace meltray::observe {
+namespace {
+
+constexpr double kVoxel = 0.5;    // spacings
+constexpr double kSupport = 1.5;  // spacings
+constexpr float kThreshold = 0.5F;
+
+/// Metal as a smoothed volume fraction on a regular grid, with a mark on what is anchored by solid.
+class VoxelGrid {
+ public:
+  VoxelGrid(const Particles& p, double spacing, const VoidRegion& region)
+      : flat_(p.dim == 2), voxel_(kVoxel * spacing), origin_(region.min) {
+    for (int d = 0; d < 3; ++d)
+      n_[d] = std::max<std::int64_t>(
+          1, static_cast<std::int64_t>(std::ceil((region.max[d] - region.min[d]) / voxel_)));
+    if (flat_) {
+      n_[1] = 1;
+      origin_[1] = -0.5 * voxel_;
+    }
+    fraction_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), 0.0F);
+    anchored_.assign(fraction_.size(), 0);
+    // Integral of (1 - r/R)^2 is 2 pi R^3/15 in space and pi R^2/6 in the plane.
+    const double radius = kSupport * spacing;
+    const double scale = flat_ ? spacing * spacing / (constants::pi * radius * radius / 6)
+                               : std::pow(spacing, 3) / (2 * constants::pi * std::pow(radius, 3) / 15);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (!p.has(i, kRemoved)) spread(position(p, i), radius, static_cast<float>(scale), !p.is_liquid(i));
+  }
+
+  double depth() {
+    drop_loose_metal();
+    const std::vector<std::int64_t> seeds = top_layer();
+    std::int64_t lowest = n_[2];
+    std::int64_t at = -1;
+    flood(
+        seeds, [this](std::int64_t v) { return fraction_[v] < kThreshold; },
+        [&](std::int64_t v) {
+          const std::int64_t k = v / (n_[0] * n_[1]);
+          // Of equally low voxels the emptier one: its ground is the deeper one.
+          if (k < lowest || (k == lowest && below(v) < below(at))) {
+            lowest = k;
+            at = v;
+          }
+        });
+    if (at < 0) return 0;
+    const double z = origin_[2] + (static_cast<double>(lowest) + 0.5) * voxel_;
+    double down = 0.5;  // at the lower edge of the region the void goes on
+    if (lowest > 0) {
+      const double here = fraction_[at], under = below(at);
+      down = (kThreshold - here) / std::max(under - here, 1e-6);
+    }
+    return std::max(0.0, -(z - std::clamp(down, 0.0, 1.0) * voxel_));
+  }
+
+ private:
+  double below(std::int64_t v) const {
+    const std::int64_t u = v - n_[0] * n_[1];
+    return u >= 0 ? fraction_[u] : 0;
+  }
+
+  void spread(const Vec3& x, double radius, float scale, bool solid) {
+    std::int64_t lo[3], hi[3];
+    for (int d = 0; d < 3; ++d) {
+      lo[d] = std::max<std::int64_t>(
+          0, static_cast<std::int64_t>(std::ceil((x[d] - radius - origin_[d]) / voxel_ - 0.5)));
+      hi[d] = std::min<std::int64_t>(
+          n_[d] - 1, static_cast<std::int64_t>(std::floor((x[d] + radius - origin_[d]) / voxel_ - 0.5)));
+      if (lo[d] > hi[d]) return;
+    }
+    for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
+      for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
+        for (std::int64_t i = lo[0]; i <= hi[0]; ++i) {
+          const Vec3 c = origin_ + voxel_ * Vec3(i + 0.5, j + 0.5, k + 0.5);
+          const double r2 = (c - x).squaredNorm();
+          if (r2 >= radius * radius) continue;
+          const auto q = static_cast<float>(1 - std::sqrt(r2) / radius);
+          const std::int64_t v = (k * n_[1] + j) * n_[0] + i;
+          fraction_[v] += scale * q * q;
+          if (solid) anchored_[v] = 1;
+        }
+  }
+
+  std::vector<std::int64_t> top_layer() const {
+    std::vector<std::int64_t> seeds;
+    for (std::int64_t v = (n_[2] - 1) * n_[1] * n_[0]; v < n_[2] * n_[1] * n_[0]; ++v) seeds.push_back(v);
+    return seeds;
+  }
+
+  /// Metal that cannot be reached from solid or from the side or bottom of the region becomes void.
+  void drop_loose_metal() {
+    std::vector<std::int64_t> seeds;
+    std::int64_t v = 0;
+    for (std::int64_t k = 0; k < n_[2]; ++k)
+      for (std::int64_t j = 0; j < n_[1]; ++j)
+        for (std::int64_t i = 0; i < n_[0]; ++i, ++v) {
+          const bool edge = k == 0 || i == 0 || i == n_[0] - 1 || (!flat_ && (j == 0 || j == n_[1] - 1));
+          if (edge || anchored_[v]) seeds.push_back(v);
+        }
+    std::vector<std::uint8_t> held(fraction_.size(), 0);
+    flood(
+        seeds, [this](std::int64_t u) { return fraction_[u] >= kThreshold; },
+        [&](std::int64_t u) { held[u] = 1; });
+    for (std::size_t u = 0; u < fraction_.size(); ++u)
+      if (!held[u]) fraction_[u] = std::min(fraction_[u], 0.49F);
+  }
+
+  /// Visits every voxel that fulfils `inside` and is connected over faces to a seed that does.
+  template <class Inside, class Visit>
+  void flood(const std::vector<std::int64_t>& seeds, Inside&& inside, Visit&& visit) const {
+    std::vector<std::uint8_t> seen(fraction_.size(), 0);
+    std::vector<std::int64_t> open;
+    const auto push = [&](std::int64_t v) {
+      if (seen[v] || !inside(v)) return;
+      seen[v] = 1;
+      visit(v);
+      open.push_back(v);
+    };
+    for (const auto s : seeds) push(s);
+    while (!open.empty()) {
+      const std::int64_t v = open.back();
+      open.pop_back();
+      const std::int64_t i = v % n_[0], j = v / n_[0] % n_[1], k = v / (n_[0] * n_[1]);
+      if (i > 0) push(v - 1);
+      if (i + 1 < n_[0]) push(v + 1);
+      if (j > 0) push(v - n_[0]);
+      if (j + 1 < n_[1]) push(v + n_[0]);
+      if (k > 0) push(v - n_[0] * n_[1]);
+      if (k + 1 < n_[2]) push(v + n_[0] * n_[1]);
+    }
+  }
+
+  bool flat_;
+  double voxel_;
+  Vec3 origin_;
+  std::int64_t n_[3]{};
+  std::vector<float> fraction_;
+  std::vector<std::uint8_t> anchored_;
+};
+
+}  // namespace
+
+double void_depth(const Particles& p, double spacing, const VoidRegion& region) {
+  return VoxelGrid(p, spacing, region).depth();
+}
+
+double axis_depth(const laser::Tracer& tracer, const laser::Beam& beam, double t, double spacing,
+                  double thickness) {
+  const auto& vertices = tracer.mesh().vertices;
+  if (tracer.mesh().triangles.empty()) return 0;
+  double top = 0;
+  for (const auto& v : vertices) top = std::max(top, v[2]);
+  bool any = false;
+  double lowest = 1e300;
+  for (const auto& ray : beam.axis_bundle(t, top + spacing))
+    if (const auto hit = tracer.first_hit(ray)) {
+      any = true;
+      lowest = std::min(lowest, (*hit)[2]);
+    }
+  return any ? std::max(0.0, -lowest) : thickness;
+}
+
+}  // namespace meltray::observe

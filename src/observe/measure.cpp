@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "meltray/observe/capillary.hpp"
+#include "meltray/observe/history.hpp"
+#include "meltray/observe/pool.hpp"
+
+namespace meltray::observe {
+namespace {
+
+/// The void is looked for where the melt and the beam are and somewhat around (melt may have left the deepest
+/// part of the ground bare), never outside the workpiece: beyond its faces there is empty space that is no
+/// capillary.
+VoidRegion region_around(const Pool& pool, const std::optional<Vec3>& axis, double reach,
+                         const scene::Domain& domain) {
+  const double side = 3 * domain.spacing, down = 6 * domain.spacing;
+  VoidRegion r{pool.min, pool.max};
+  for (int d = 0; d < 2; ++d) {
+    if (axis) {
+      r.min[d] = std::min(r.min[d], (*axis)[d] - reach);
+      r.max[d] = std::max(r.max[d], (*axis)[d] + reach);
+    }
+    r.min[d] = std::max(r.min[d] - side, domain.min[d] + 0.5 * domain.spacing);
+    r.max[d] = std::min(r.max[d] + side, domain.max[d] - 0.5 * domain.spacing);
+  }
+  r.min[2] = std::max(r.min[2] - down, domain.min[2]);
+  r.max[2] = std::max(r.max[2], 0.0) + side;
+  return r;
+}
+
+}  // namespace
+
+HistoryRow measure(const scene::Simulation& simulation, const StepsSinceRow& since) {
+  const auto& scene = simulation.scene();
+  const Particles& p = simulation.particles();
+  const double spacing = scene.domain.spacing;
+  const double t = simulation.time();
+  HistoryRow row;
+  row.time = t;
+
+  const auto laser = simulation.laser_state();
+  row.absorbed = laser.absorbed;
+  row.escaped = laser.escaped;
+  row.residual = laser.residual;
+
+  const auto* beam = simulation.beam();
+  std::optional<Vec3> axis;
+  double reach = 0;
+  if (beam != nullptr) {
+    row.laser_power = beam->power(t);
+    axis = beam->focus(t);
+    reach = beam->spec().focal_diameter;
+  }
+  const Pool pool = measure_pool(p, spacing, axis, reach);
+  row.pool_length = pool.length;
+  row.pool_width = pool.width;
+  row.pool_depth = pool.depth;
+  row.top_surface = top_surface(p, spacing, pool);
+  if (pool.exists)
+    row.capillary_depth = void_depth(p, spacing, region_around(pool, axis, reach, scene.domain));
+  if (beam != nullptr && simulation.tracer() != nullptr) {
+    row.axis_depth = axis_depth(*simulation.tracer(), *beam, t, spacing, -scene.domain.min[2]);
+    row.closed = capillary_closed(row.capillary_depth, row.axis_depth, spacing);
+  }
+
+  double speed2 = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!is_material(p, i)) continue;
+    row.max_temperature = std::max(row.max_temperature, p.temperature[i]);
+    if (p.is_liquid(i)) speed2 = std::max(speed2, velocity(p, i).squaredNorm());
+  }
+  row.max_speed = std::sqrt(speed2);
+  row.liquid = simulation.liquid_count();
+  row.active = simulation.active_count();
+  row.ejected_mass = simulation.mass().ejected;
+  row.evaporative_loss = simulation.evaporative_loss();
+  row.dt = since.mean_step();
+  row.limiter = since.main_limiter();
+  row.steps = simulation.counters().steps;
+  row.energy = simulation.energy();
+  row.energy_error = row.energy.relative_error();
+  return row;
+}
+
+}  // namespace meltray::observe

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/observe/snapshots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "meltray/core/errors.hpp"
+#include "meltray/observe/files.hpp"
+#include "meltray/observe/hdf5_file.hpp"
+#include "meltray/observe/pool.hpp"
+
+namespace meltray::observe {
+namespace fs = std::filesystem;
+namespace {
+
+/// A field of a snapshot as it appears in the XDMF file.
+struct Field {
+  const char* name;
+  const char* unit;
+  const char* type;  ///< XDMF number type
+  int bytes;
+  bool vector;
+};
+constexpr Field kFields[] = {{"velocity", "m/s", "Float", 4, true},
+                             {"temperature", "K", "Float", 4, false},
+                             {"pressure", "Pa", "Float", 4, false},
+                             {"phase", "0 solid, 1 liquid", "UChar", 1, false},
+                             {"resolidified", "flag", "UChar", 1, false},
+                             {"on_surface", "flag", "UChar", 1, false},
+                             {"id", "index", "Int", 4, false}};
+
+void write_beam(Hdf5Writer& out, const laser::Beam& beam, double t) {
+  const Vec3 focus = beam.focus(t), axis = beam.axis();
+  out.attribute("/", "beam_focus_m", std::span<const double>(focus.data(), 3));
+  out.attribute("/", "beam_axis", std::span<const double>(axis.data(), 3));
+  out.attribute("/", "beam_focal_diameter_m", beam.spec().focal_diameter);
+  out.attribute("/", "beam_rayleigh_length_m", beam.spec().rayleigh_length);
+  out.attribute("/", "beam_power_w", beam.power(t));
+}
+
+std::string grid_text(const std::string& file, double time, std::size_t n) {
+  std::string text = fmt::format(
+      "   <Grid Name=\"particles\" GridType=\"Uniform\">\n"
+      "    <Time Value=\"{}\"/>\n"
+      "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n"
+      "    <Geometry GeometryType=\"XYZ\">\n"
+      "     <DataItem Dimensions=\"{} 3\" NumberType=\"Float\" Precision=\"4\" "
+      "Format=\"HDF\">{}:/position</DataItem>\n"
+      "    </Geometry>\n",
+      time, n, n, file);
+  for (const Field& f : kFields)
+    text += fmt::format(
+        "    <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\">\n"
+        "     <DataItem Dimensions=\"{2}{3}\" NumberType=\"{4}\" Precision=\"{5}\" "
+        "Format=\"HDF\">{6}:/{0}</DataItem>\n"
+        "    </Attribute>\n",
+        f.name, f.vector ? "Vector" : "Scalar", n, f.vector ? " 3" : "", f.type, f.bytes, file);
+  return text + "   </Grid>\n";
+}
+
+}  // namespace
+
+Snapshots::Snapshots(fs::path run_folder, double time) : folder_(std::move(run_folder)) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& e : fs::directory_iterator(folder_ / "particles", error)) {
+    if (e.path().extension() == ".h5") files.push_back(e.path());
+    if (e.path().extension() == ".part") fs::remove(e.path(), error);
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    bool keep = false;
+    double t = 0;
+    std::size_t n = 0;
+    try {
+      const Hdf5Reader in(read_bytes(file), file.string());
+      t = in.attribute_double("/", "time_s");
+      n = in.entries("id");
+      keep = t <= time;
+    } catch (const UsageError&) {
+      // Not readable as one of ours: it is written again when the run gets there.
+    }
+    if (keep)
+      entries_.push_back({"particles/" + file.filename().string(), t, n});
+    else
+      fs::remove(file, error);
+  }
+  if (!entries_.empty()) next_ = std::atoi(fs::path(entries_.back().file).stem().c_str()) + 1;
+}
+
+void Snapshots::write(const Particles& p, const SnapshotInfo& info) {
+  std::vector<float> x, v, temperature, pressure;
+  std::vector<std::uint8_t> phase, resolidified, surface;
+  std::vector<std::int32_t> id;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!is_material(p, i)) continue;
+    const Vec3 xi = position(p, i), vi = velocity(p, i);
+    for (int d = 0; d < 3; ++d) {
+      x.push_back(static_cast<float>(xi[d]));
+      v.push_back(static_cast<float>(vi[d]));
+    }
+    temperature.push_back(static_cast<float>(p.temperature[i]));
+    pressure.push_back(static_cast<float>(p.pressure[i]));
+    phase.push_back(p.phase[i]);
+    resolidified.push_back(p.has(i, kResolidified) ? 1 : 0);
+    surface.push_back(info.on_surface != nullptr && i < info.on_surface->size() ? (*info.on_surface)[i] : 0);
+    id.push_back(static_cast<std::int32_t>(i));
+  }
+  constexpr auto packed = Hdf5Writer::Packing::compressed;
+  Hdf5Writer out;
+  out.dataset("position", x, 3, packed);
+  out.dataset("velocity", v, 3, packed);
+  out.dataset("temperature", temperature, 1, packed);
+  out.dataset("pressure", pressure, 1, packed);
+  out.dataset("phase", phase, 1, packed);
+  out.dataset("resolidified", resolidified, 1, packed);
+  out.dataset("on_surface", surface, 1, packed);
+  out.dataset("id", id, 1, packed);
+  out.attribute("position", "units", std::string_view("m"));
+  for (const Field& f : kFields) out.attribute(f.name, "units", std::string_view(f.unit));
+  out.attribute("/", "schema_version", std::int64_t{kSnapshotSchema});
+  out.attribute("/", "title", std::string_view(info.title));
+  out.attribute("/", "time_s", info.time);
+  out.attribute("/", "spacing_m", info.spacing);
+  out.attribute("/", "dimension", std::int64_t{p.dim});
+  if (info.beam != nullptr) write_beam(out, *info.beam, info.time);
+
+  const std::string name = fmt::format("particles/{:06}.h5", next_);
+  replace_file(folder_ / name, out.image());
+  ++next_;
+  entries_.push_back({name, info.time, id.size()});
+  write_collection();
+}
+
+void Snapshots::write_collection() const {
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n <Domain>\n"
+      "  <Information Name=\"schema_version\" Value=\"{}\"/>\n"
+      "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+      kSnapshotSchema);
+  for (const auto& e : entries_) text += grid_text(e.file, e.time, e.particles);
+  text += "  </Grid>\n </Domain>\n</Xdmf>\n";
+  replace_file(folder_ / "particles.xdmf", text);
+}
+
+}  // namespace meltray::observe

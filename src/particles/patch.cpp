@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/particles/patch.hpp"
+
+#include <algorithm>
+
+#include "meltray/core/parallel.hpp"
+
+namespace meltray {
+
+namespace {
+
+bool moves(const Particles& p, Index i) { return p.is_liquid(i) && !p.has(i, kRemoved); }
+
+}  // namespace
+
+PatchSelector::PatchSelector(const CellGrid& grid, const Particles& particles) : grid_(grid) {
+  resting_.resize(grid.cells());
+  const auto x = view(particles.x);
+  for (Index i = 0; i < static_cast<Index>(particles.size()); ++i) {
+    if (particles.has(i, kRemoved)) continue;
+    if (moves(particles, i))
+      moving_.push_back(i);
+    else
+      resting_[grid_.cell(x, i)].push_back(i);
+  }
+}
+
+void PatchSelector::melted(const Particles& particles, Index i) {
+  auto& cell = resting_[grid_.cell(view(particles.x), i)];
+  cell.erase(std::lower_bound(cell.begin(), cell.end(), i));
+  moving_.insert(std::lower_bound(moving_.begin(), moving_.end(), i), i);
+}
+
+void PatchSelector::solidified(const Particles& particles, Index i) {
+  auto& cell = resting_[grid_.cell(view(particles.x), i)];
+  cell.insert(std::lower_bound(cell.begin(), cell.end(), i), i);
+  moving_.erase(std::lower_bound(moving_.begin(), moving_.end(), i));
+}
+
+void PatchSelector::select_all(const Particles& particles, Patch& patch) {
+  marked_.assign(grid_.cells(), 1);
+  fill(particles, patch);
+}
+
+void PatchSelector::select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch) {
+  core_.assign(grid_.cells(), 0);
+  marked_.assign(grid_.cells(), 0);
+  const auto x = view(particles.x);
+  const auto mark = [&](Index i) {
+    const Index cell = grid_.cell(x, i);
+    if (core_[cell]) return;
+    core_[cell] = 1;
+    grid_.for_block(cell, 2, [&](Index k) { marked_[k] = 1; });
+  };
+  for (Index i : moving_)
+    if (!particles.has(i, kRemoved)) mark(i);
+  for (Index i : also) mark(i);
+  fill(particles, patch);
+}
+
+void PatchSelector::select_resting_near(const Particles& particles, std::span<const Index> centres, Patch& patch) {
+  core_.assign(grid_.cells(), 0);
+  marked_.assign(grid_.cells(), 0);
+  const auto x = view(particles.x);
+  for (Index i : centres) {
+    const Index cell = grid_.cell(x, i);
+    if (core_[cell]) continue;
+    core_[cell] = 1;
+    grid_.for_block(cell, 1, [&](Index k) { marked_[k] = 1; });
+  }
+  fill(particles, patch, false);
+}
+
+void PatchSelector::gather(const Particles& particles, const Vec3& min, const Vec3& max,
+                           std::vector<Index>& out) const {
+  out.clear();
+  const auto x = view(particles.x);
+  const auto inside = [&](Index i) {
+    for (int c = 0; c < particles.dim; ++c)
+      if (x[c][i] < min[c] || x[c][i] > max[c]) return false;
+    return true;
+  };
+  grid_.for_box(min, max, [&](Index cell) {
+    for (Index i : resting_[cell])
+      if (inside(i)) out.push_back(i);
+  });
+  for (Index i : moving_)
+    if (!particles.has(i, kRemoved) && inside(i)) out.push_back(i);
+}
+
+/// Counting sort of the moving particles by cell; ascending indices within a cell.
+void PatchSelector::sort_moving(const Particles& particles) {
+  const auto x = view(particles.x);
+  std::erase_if(moving_, [&](Index i) { return particles.has(i, kRemoved); });
+  const Index cells = grid_.cells();
+  moving_start_.assign(cells + 1, 0);
+  moving_cell_.resize(moving_.size());
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    moving_cell_[k] = grid_.cell(x, moving_[k]);
+    ++moving_start_[moving_cell_[k] + 1];
+  }
+  for (Index c = 0; c < cells; ++c) moving_start_[c + 1] += moving_start_[c];
+  moving_sorted_.resize(moving_.size());
+  for (std::size_t k = 0; k < moving_.size(); ++k) moving_sorted_[moving_start_[moving_cell_[k]]++] = moving_[k];
+  for (Index c = cells; c > 0; --c) moving_start_[c] = moving_start_[c - 1];
+  moving_start_[0] = 0;
+}
+
+void PatchSelector::fill(const Particles& particles, Patch& patch, bool with_moving) {
+  if (with_moving) sort_moving(particles);
+  const Index cells = grid_.cells();
+  patch.dim = particles.dim;
+  patch.global.clear();
+  patch.cell_start.resize(cells + 1);
+  for (Index c = 0; c < cells; ++c) {
+    patch.cell_start[c] = patch.size();
+    if (!marked_[c]) continue;
+    if (with_moving)
+      patch.global.insert(patch.global.end(), moving_sorted_.begin() + moving_start_[c],
+                          moving_sorted_.begin() + moving_start_[c + 1]);
+    patch.global.insert(patch.global.end(), resting_[c].begin(), resting_[c].end());
+  }
+  patch.cell_start[cells] = patch.size();
+
+  reload(particles, patch);
+}
+
+void reload(const Particles& particles, Patch& patch) {
+  const Index n = patch.size();
+  for (int c = 0; c < particles.dim; ++c) {
+    patch.x[c].resize(n);
+    patch.v[c].resize(n);
+  }
+  patch.h.resize(n);
+  patch.mass.resize(n);
+  patch.smoothing.resize(n);
+  patch.pressure.resize(n);
+  patch.liquid.resize(n);
+  patch.wall.resize(n);
+  parallel_for(n, [&](Index k) {
+    const Index i = patch.global[k];
+    for (int c = 0; c < particles.dim; ++c) {
+      patch.x[c][k] = particles.x[c][i];
+      patch.v[c][k] = particles.v[c][i];
+    }
+    patch.h[k] = particles.h[i];
+    patch.mass[k] = particles.mass[i];
+    patch.smoothing[k] = particles.smoothing[i];
+    patch.pressure[k] = particles.pressure[i];
+    patch.liquid[k] = particles.is_liquid(i);
+    patch.wall[k] = particles.wall[i];
+  });
+}
+
+void write_back(const Patch& patch, Particles& particles) {
+  parallel_for(patch.size(), [&](Index k) {
+    const Index i = patch.global[k];
+    if (patch.liquid[k])
+      for (int c = 0; c < patch.dim; ++c) {
+        particles.x[c][i] = patch.x[c][k];
+        particles.v[c][i] = patch.v[c][k];
+      }
+    particles.h[i] = patch.h[k];
+    particles.pressure[i] = patch.pressure[k];
+  });
+}
+
+}  // namespace meltray

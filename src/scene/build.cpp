@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "scene/build.hpp"
+
+#include <cmath>
+
+#include "meltray/core/constants.hpp"
+#include "meltray/core/errors.hpp"
+
+namespace meltray::scene {
+
+namespace {
+
+/// Faces are x_min, x_max, y_min, y_max, z_min, z_max; in 2-D component 1 is z.
+int face_axis(int face, int dim) { return dim == 3 ? face / 2 : (face < 2 ? 0 : 1); }
+bool face_exists(int face, int dim) { return dim == 3 || face / 2 != 1; }
+
+/// Uniform in [-1, 1) from the lattice site and the seed (splitmix64): the same on every machine.
+double jitter(std::uint64_t site, std::uint64_t component, std::uint64_t seed) {
+  std::uint64_t z = (site * 3 + component) + 0x9e3779b97f4a7c15ULL * (seed + 1);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * (2.0 / 9007199254740992.0) - 1;
+}
+
+/// The last body that contains a point; null outside all.
+const Body* body_at(const Domain& domain, const Vec3& x) {
+  const Body* found = nullptr;
+  for (const Body& b : domain.bodies) {
+    bool inside = true;
+    double r2 = 0;
+    for (int c = 0; c < domain.dimension; ++c) {
+      if (b.shape == ShapeKind::box)
+        inside = inside && x[c] > b.min[c] && x[c] < b.max[c];
+      else
+        r2 += std::pow((x[c] - b.center[c]) / b.radii[c], 2);
+    }
+    if (inside && r2 < 1) found = &b;
+  }
+  return found;
+}
+
+Vec3 initial_velocity(const Domain& domain, const Body& body, const Vec3& x) {
+  Vec3 v = body.velocity;
+  const double u = domain.velocity_scale;
+  if (domain.velocity_field == VelocityField::taylor_green) {
+    const double kx = 2 * constants::pi / (domain.max[0] - domain.min[0]);
+    const double kz = 2 * constants::pi / (domain.max[1] - domain.min[1]);
+    v[0] -= u * std::cos(kx * x[0]) * std::sin(kz * x[1]);
+    v[1] += u * std::sin(kx * x[0]) * std::cos(kz * x[1]);
+  } else if (domain.velocity_field == VelocityField::rotation) {
+    const Vec3 r = x - 0.5 * (domain.min + domain.max);
+    v[0] -= u * r[1] / (domain.max[0] - domain.min[0]);
+    v[1] += u * r[0] / (domain.max[0] - domain.min[0]);
+  }
+  return v;
+}
+
+/// Calls f(point, site number) for the sites of a lattice over the box, turned by fixed angles if asked for.
+template <class F>
+void for_sites(const Domain& domain, F&& f) {
+  const int dim = domain.dimension;
+  const double dx = domain.spacing;
+  if (domain.arrangement != Arrangement::rotated) {
+    std::array<std::int64_t, 3> count{1, 1, 1};
+    for (int c = 0; c < dim; ++c) count[c] = std::llround((domain.max[c] - domain.min[c]) / dx);
+    std::uint64_t site = 0;
+    for (std::int64_t k = 0; k < count[2]; ++k)
+      for (std::int64_t j = 0; j < count[1]; ++j)
+        for (std::int64_t i = 0; i < count[0]; ++i) {
+          const std::array<std::int64_t, 3> n{i, j, k};
+          Vec3 x = Vec3::Zero();
+          // Spread evenly where the length is no multiple of the spacing.
+          for (int c = 0; c < dim; ++c) x[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
+          f(x, site++);
+        }
+    return;
+  }
+  const Vec3 centre = 0.5 * (domain.min + domain.max);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  const double a = 0.3, b = 0.47;  // no low-order symmetry of the lattice
+  turn.topLeftCorner<2, 2>() << std::cos(a), -std::sin(a), std::sin(a), std::cos(a);
+  if (dim == 3) turn = turn * Eigen::AngleAxisd(b, Vec3::UnitX()).toRotationMatrix();
+  double reach = 0;
+  for (int c = 0; c < dim; ++c) reach += std::pow(domain.max[c] - domain.min[c], 2);
+  const auto n = static_cast<std::int64_t>(std::ceil(0.5 * std::sqrt(reach) / dx));
+  std::uint64_t site = 0;
+  for (std::int64_t k = dim == 3 ? -n : 0; k <= (dim == 3 ? n : 0); ++k)
+    for (std::int64_t j = -n; j <= n; ++j)
+      for (std::int64_t i = -n; i <= n; ++i, ++site) {
+        Vec3 x = turn * Vec3(i + 0.5, j + 0.5, dim == 3 ? k + 0.5 : 0.0) * dx;
+        for (int c = 0; c < dim; ++c) x[c] += centre[c];
+        bool inside = true;
+        for (int c = 0; c < dim; ++c) inside = inside && x[c] > domain.min[c] && x[c] < domain.max[c];
+        if (inside) f(x, site);
+      }
+}
+
+void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
+  const Domain& domain = scene.domain;
+  const double mass = k.density * std::pow(k.spacing, k.dim);
+  for_sites(domain, [&](Vec3 x, std::uint64_t site) {
+    const Body* body = body_at(domain, x);
+    if (!body) return;
+    if (domain.jitter > 0)
+      for (int c = 0; c < k.dim; ++c) x[c] += domain.jitter * k.spacing * jitter(site, c, domain.seed);
+    out.add(x, scene.material.enthalpy(body->temperature), mass, k.smoothing);
+    const std::size_t i = out.size() - 1;
+    out.temperature[i] = body->temperature;
+    const bool liquid = out.h[i] >= scene.material.enthalpy_liquidus();
+    if (liquid) {
+      out.phase[i] = static_cast<std::uint8_t>(Phase::liquid);
+      out.flags[i] |= kWasLiquid;
+      const Vec3 v = initial_velocity(domain, *body, x);
+      for (int c = 0; c < k.dim; ++c) out.v[c][i] = v[c];
+    }
+  });
+}
+
+void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
+  const Domain& domain = scene.domain;
+  const int layers = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing)), dim = k.dim;
+  const double mass = k.density * std::pow(k.spacing, dim);
+  std::array<std::int64_t, 3> count{1, 1, 1}, low{0, 0, 0}, high{1, 1, 1};
+  for (int c = 0; c < dim; ++c) {
+    count[c] = std::llround((domain.max[c] - domain.min[c]) / k.spacing);
+    low[c] = 0;
+    high[c] = count[c];
+  }
+  for (int f = 0; f < 6; ++f) {
+    if (!face_exists(f, dim) || domain.faces[f].kind != FaceKind::wall) continue;
+    (f % 2 ? high : low)[face_axis(f, dim)] += f % 2 ? layers : -layers;
+  }
+  for (std::int64_t z = low[2]; z < high[2]; ++z)
+    for (std::int64_t y = low[1]; y < high[1]; ++y)
+      for (std::int64_t x = low[0]; x < high[0]; ++x) {
+        const std::array<std::int64_t, 3> n{x, y, z};
+        int owner = -1;
+        std::int64_t depth = 0;  // the face a dummy is farthest behind owns it
+        for (int f = 0; f < 6; ++f) {
+          if (!face_exists(f, dim) || domain.faces[f].kind != FaceKind::wall) continue;
+          const int c = face_axis(f, dim);
+          const std::int64_t behind = f % 2 ? n[c] - count[c] + 1 : -n[c];
+          if (behind > depth) {
+            depth = behind;
+            owner = f;
+          }
+        }
+        if (owner < 0) continue;
+        Vec3 p = Vec3::Zero();
+        for (int c = 0; c < dim; ++c) p[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
+        const Face& face = domain.faces[owner];
+        const double t = face.thermal == ThermalKind::temperature ? face.temperature : scene.heat.initial_temperature;
+        out.add(p, scene.material.enthalpy(t), mass, k.smoothing, static_cast<std::uint8_t>(owner + 1));
+        const std::size_t i = out.size() - 1;
+        out.temperature[i] = t;
+        for (int c = 0; c < dim; ++c) out.v[c][i] = k.faces[owner].velocity[c];
+      }
+}
+
+}  // namespace
+
+terms::SceneConstants build_constants(const Scene& scene) {
+  terms::SceneConstants k;
+  k.dim = scene.domain.dimension;
+  k.spacing = scene.domain.spacing;
+  k.smoothing = scene.domain.smoothing_ratio * k.spacing;
+  k.density = scene.material.density;
+  k.kernel = scene.domain.kernel == KernelChoice::wendland_c2 ? sph::KernelType::wendland_c2
+                                                              : sph::KernelType::cubic_spline;
+  k.lattice = sph::lattice_sums(k.kernel, k.dim, k.spacing, k.smoothing);
+  k.material = scene.material;
+  for (int f = 0; f < 6; ++f) {
+    const Face& face = scene.domain.faces[f];
+    terms::WallFace& wall = k.faces[f];
+    wall.axis = face_axis(f, k.dim);
+    if (!face_exists(f, k.dim)) continue;
+    wall.plane = f % 2 ? scene.domain.max[wall.axis] : scene.domain.min[wall.axis];
+    wall.no_slip = face.kind == FaceKind::wall && !face.slip;
+    wall.velocity = face.velocity;
+    wall.isothermal = face.kind == FaceKind::wall && face.thermal == ThermalKind::temperature;
+    wall.temperature = face.temperature;
+    wall.flux = face.thermal == ThermalKind::flux ? face.flux : 0.0;
+    k.any_no_slip = k.any_no_slip || wall.no_slip;
+    k.any_isothermal = k.any_isothermal || wall.isothermal;
+  }
+  return k;
+}
+
+Particles build_particles(const Scene& scene, const terms::SceneConstants& constants) {
+  Particles out;
+  out.dim = constants.dim;
+  add_bodies(scene, constants, out);
+  if (out.size() == 0) throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");
+  add_dummies(scene, constants, out);
+  return out;
+}
+
+CellGrid build_grid(const Scene& scene, const terms::SceneConstants& k, double skin) {
+  Vec3 min = scene.domain.min, max = scene.domain.max;
+  std::array<bool, 3> periodic{};
+  const double margin = std::ceil(2 * k.smoothing / k.spacing) * k.spacing;
+  for (int c = 0; c < k.dim; ++c) {
+    const int f = k.dim == 3 ? 2 * c : (c == 0 ? 0 : 4);
+    periodic[c] = scene.domain.faces[f].kind == FaceKind::periodic;
+    if (scene.domain.faces[f].kind == FaceKind::wall) min[c] -= margin;
+    if (scene.domain.faces[f + 1].kind == FaceKind::wall) max[c] += margin;
+  }
+  return CellGrid(k.dim, min, max, 2 * k.smoothing + skin, periodic);
+}
+
+}  // namespace meltray::scene

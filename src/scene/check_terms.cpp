@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/case_check.hpp"
+#include "scene/keys.hpp"
+
+namespace meltray::scene {
+
+namespace {
+
+[[noreturn]] void inert(const Document& document, const char* key, const char* why, const char* allowed) {
+  refuse(document.place(key), key, fmt::format("true without effect: {}", why), allowed);
+}
+
+/// Highest temperature that the scene starts with or is held at.
+double hottest(const Scene& scene) {
+  double t = 0;
+  for (const Body& body : scene.domain.bodies) t = std::max(t, body.temperature);
+  for (const Face& face : scene.domain.faces)
+    if (face.thermal == ThermalKind::temperature) t = std::max(t, face.temperature);
+  return t;
+}
+
+bool heated(const Scene& scene) {
+  const auto& faces = scene.domain.faces;
+  const bool flux = std::any_of(faces.begin(), faces.end(),
+                                [](const Face& f) { return f.thermal == ThermalKind::flux && f.flux > 0; });
+  return scene.laser || flux || hottest(scene) >= scene.material.liquidus;
+}
+
+void check_thermal(const Scene& scene, const Document& document, int index) {
+  const Face& face = scene.domain.faces[static_cast<std::size_t>(index)];
+  const std::string key = path_of("faces.*.thermal", index);
+  if (face.thermal != ThermalKind::adiabatic && !scene.terms.conduction)
+    refuse(document.place(key), key, "a heated face without terms.conduction, which carries the heat in",
+           "\"adiabatic\", or terms.conduction = true");
+  if (face.thermal == ThermalKind::temperature && face.kind == FaceKind::free)
+    refuse(document.place(key), key, "\"temperature\" on a free face, which has no wall to hold it",
+           "\"adiabatic\", \"flux\", or kind = \"wall\"");
+}
+
+}  // namespace
+
+void check_terms(const Scene& scene, const Document& document) {
+  const Terms& t = scene.terms;
+  if (!(t.conduction || t.viscosity || t.interface_viscosity || t.pressure || t.surface_tension || t.recoil ||
+        t.evaporation || t.radiation || t.buoyancy || t.gravity || scene.laser))
+    refuse(document.place("terms.conduction"), "terms", "no term that acts", "at least one term = true");
+  if (t.marangoni && !t.surface_tension)
+    inert(document, "terms.marangoni", "terms.surface_tension is off",
+          "terms.surface_tension = true with it");
+  if (t.wetting && !t.surface_tension)
+    inert(document, "terms.wetting", "terms.surface_tension is off", "terms.surface_tension = true with it");
+  if (t.gravity && scene.domain.gravity == 0)
+    inert(document, "terms.gravity", "domain.gravity_m_s2 is 0", "domain.gravity_m_s2 > 0 with it");
+  if (t.buoyancy && scene.domain.gravity == 0)
+    inert(document, "terms.buoyancy", "domain.gravity_m_s2 is 0", "domain.gravity_m_s2 > 0 with it");
+  if (t.evaporation && !heated(scene))
+    inert(document, "terms.evaporation", "nothing heats the material and it starts cold",
+          "a laser, a hot face, a flux or a liquid body with it");
+  if (t.recoil && scene.surface.recoil_pressure == 0 && !heated(scene))
+    inert(document, "terms.recoil", "nothing heats the material and it starts cold",
+          "a laser, a hot face, a flux, a liquid body or surface.recoil_pressure_pa with it");
+  if (t.interface_viscosity && scene.flow.reference_speed == 0)
+    refuse(document.place("flow.reference_speed_m_s"), "flow.reference_speed_m_s",
+           "0, which switches terms.interface_viscosity off", "a number > 0 [m/s]");
+  if (t.interface_viscosity && scene.flow.interface_viscosity_free == 0 &&
+      scene.flow.interface_viscosity_solid == 0)
+    inert(document, "terms.interface_viscosity", "both its coefficients are 0",
+          "flow.interface_viscosity_free or flow.interface_viscosity_solid > 0");
+  if (t.pressure && scene.flow.projection == Projection::stage && scene.flow.drift_time == 0 &&
+      scene.flow.reference_speed == 0)
+    refuse(document.place("splitting.projection"), "splitting.projection",
+           "\"stage\" without a time for the drift of density",
+           "flow.drift_time_s or flow.reference_speed_m_s > 0");
+  for (int f = 0; f < 6; ++f)
+    if (scene.domain.dimension == 3 || f / 2 != 1) check_thermal(scene, document, f);
+}
+
+}  // namespace meltray::scene

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "scene/case_check.hpp"
+
+namespace meltray::scene {
+
+namespace {
+
+void check_order(const Scene& scene, const Document& document) {
+  const IntegratorOptions& o = scene.time.integrator;
+  const bool euler = o.method == Method::euler;
+  if (euler ? o.order != 1 : o.order < 2)
+    refuse(document.place("time.order"), "time.order",
+           fmt::format("{} with method \"{}\"", o.order,
+                       euler                             ? "euler"
+                       : o.method == Method::imex        ? "imex"
+                       : o.method == Method::explicit_rk ? "explicit"
+                                                         : "implicit"),
+           euler ? "1" : "2 to 5");
+}
+
+/// Implicit terms need a method with an implicit part, explicit terms one with an explicit part.
+void check_partitions(const Scene& scene, const Document& document) {
+  struct Choice {
+    const char* name;
+    bool active;
+    PartitionChoice choice;
+  };
+  const Terms& on = scene.terms;
+  const Time& t = scene.time;
+  const std::array<Choice, 4> choices = {
+      {{"conduction", on.conduction, t.conduction},
+       {"viscosity", on.viscosity, t.viscosity},
+       {"interface_viscosity", on.interface_viscosity, t.interface_viscosity},
+       {"evaporation", on.evaporation || on.radiation, t.evaporation}}};
+  for (const Choice& c : choices) {
+    const std::string key = std::string("splitting.") + c.name;
+    if (!c.active) continue;
+    if (t.integrator.method == Method::explicit_rk && c.choice == PartitionChoice::implicit_)
+      refuse(document.place(key), key, "\"implicit\" with time.method = \"explicit\"",
+             "\"auto\" or \"explicit\"");
+    if (t.integrator.method == Method::implicit_rk && c.choice == PartitionChoice::explicit_)
+      refuse(document.place(key), key, "\"explicit\" with time.method = \"implicit\"",
+             "\"auto\" or \"implicit\"");
+  }
+}
+
+}  // namespace
+
+void check_time(const Scene& scene, const Document& document) {
+  const IntegratorOptions& o = scene.time.integrator;
+  check_order(scene, document);
+  check_partitions(scene, document);
+  if (o.fixed_step > scene.time.end)
+    refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
+           fmt::format("at most time.end_s = {} [s]", scene.time.end));
+  if (o.fixed_step > 0) return;
+  if (o.min_step >= o.max_step)
+    refuse(document.place("time.min_step_s"), "time.min_step_s", fmt::format("{}", o.min_step),
+           fmt::format("less than time.max_step_s = {} [s]", o.max_step));
+  if (o.initial_step > 0 && (o.initial_step < o.min_step || o.initial_step > o.max_step))
+    refuse(document.place("time.initial_step_s"), "time.initial_step_s", fmt::format("{}", o.initial_step),
+           fmt::format("time.min_step_s to time.max_step_s: {} to {} [s]", o.min_step, o.max_step));
+}
+
+}  // namespace meltray::scene

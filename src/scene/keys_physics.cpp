@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "scene/keys_build.hpp"
+
+namespace meltray::scene {
+
+namespace {
+
+Need recoil_from_vapour() {
+  return {"terms.recoil = true and no surface.recoil_pressure_pa",
+          {"terms.recoil", "surface.recoil_pressure_pa"},
+          [](const Scene& s, int) { return s.terms.recoil && s.surface.recoil_pressure == 0; }};
+}
+
+}  // namespace
+
+std::vector<Key> term_keys() {
+  return {
+      boolean("terms.conduction", MELTRAY_AT(terms.conduction), "Heat conduction, 2nd term of Eq. (4)."),
+      boolean("terms.viscosity", MELTRAY_AT(terms.viscosity),
+              "Physical viscosity of the melt, 2nd term of Eq. (3)."),
+      boolean("terms.interface_viscosity", MELTRAY_AT(terms.interface_viscosity),
+              "Numerical viscosity at the free surface and next to the solid."),
+      boolean("terms.pressure", MELTRAY_AT(terms.pressure), "Pressure from the projection, Eq. (6)."),
+      boolean("terms.surface_tension", MELTRAY_AT(terms.surface_tension),
+              "Surface tension normal to the surface."),
+      boolean("terms.marangoni", MELTRAY_AT(terms.marangoni),
+              "Force along the surface where surface tension changes with temperature."),
+      boolean("terms.wetting", MELTRAY_AT(terms.wetting),
+              "Contact angle of the melt where it meets the solid."),
+      boolean("terms.recoil", MELTRAY_AT(terms.recoil), "Recoil pressure of the vapour."),
+      boolean("terms.evaporation", MELTRAY_AT(terms.evaporation), "Heat lost with the vapour."),
+      boolean("terms.radiation", MELTRAY_AT(terms.radiation), "Heat radiated by the surface."),
+      boolean("terms.buoyancy", MELTRAY_AT(terms.buoyancy), "Buoyancy of hot melt, Eq. (8)."),
+      boolean("terms.gravity", MELTRAY_AT(terms.gravity), "Weight of the melt."),
+      boolean("terms.melting", MELTRAY_AT(terms.melting), "Solid melts and melt solidifies."),
+  };
+}
+
+std::vector<Key> flow_keys() {
+  const Need pressure = term("pressure", &Terms::pressure);
+  const Need interface = term("interface_viscosity", &Terms::interface_viscosity);
+  const Need by_step = {"splitting.projection = \"step\"", {"splitting.projection"}, [](const Scene& s, int) {
+                          return s.flow.projection == Projection::step;
+                        }};
+  const Need by_stage = {"splitting.projection = \"stage\"",
+                         {"splitting.projection"},
+                         [](const Scene& s, int) { return s.flow.projection == Projection::stage; }};
+  const Need uses_speed = {
+      "terms.interface_viscosity = true, or splitting.projection = \"stage\" without flow.drift_time_s",
+      {"terms.interface_viscosity", "splitting.projection", "flow.drift_time_s"},
+      [](const Scene& s, int) {
+        const bool drift =
+            s.terms.pressure && s.flow.projection == Projection::stage && s.flow.drift_time == 0;
+        return s.terms.interface_viscosity || drift;
+      }};
+  return {
+      number("flow.pressure_tolerance", "", above_to(0, 0.1), MELTRAY_AT(flow.pressure_tolerance),
+             "Relative residual at which the pressure solve ends.")
+          .only_if(pressure),
+      integer("flow.pressure_max_iterations", between(1, 1000000), MELTRAY_AT(flow.pressure_max_iterations),
+              "Largest number of iterations of a pressure solve.")
+          .only_if(pressure),
+      number("flow.drift_time_ratio", "steps", at_least(1), MELTRAY_AT(flow.drift_time_ratio),
+             "Time in which the projection takes back errors of density, in steps.")
+          .only_if(pressure)
+          .only_if(by_step),
+      number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),
+             "The same as a fixed time, for the projection in every stage; 0: 0.2 spacing_m / "
+             "reference_speed_m_s.")
+          .only_if(pressure)
+          .only_if(by_stage),
+      number("flow.shifting", "", between(0, 100), MELTRAY_AT(flow.shifting),
+             "Coefficient of the velocity that keeps particles evenly spread; 0: off.")
+          .only_if(pressure),
+      number(
+          "flow.reference_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.reference_speed),
+          "Speed that scales the interface viscosity: the sound speed a weakly compressible model would use.")
+          .only_if(uses_speed),
+      number("flow.interface_viscosity_free", "", at_least(0), MELTRAY_AT(flow.interface_viscosity_free),
+             "Coefficient alpha_LG of the interface viscosity at the free surface.")
+          .only_if(interface),
+      number("flow.interface_viscosity_solid", "", at_least(0), MELTRAY_AT(flow.interface_viscosity_solid),
+             "Coefficient alpha_SL of the interface viscosity next to the solid.")
+          .only_if(interface),
+      number("flow.interface_viscosity_ramp_k", "K", above(0), MELTRAY_AT(flow.interface_viscosity_ramp),
+             "Range above the melting temperature over which alpha_SL fades.")
+          .only_if(interface),
+  };
+}
+
+std::vector<Key> surface_keys() {
+  const Need forces = {"terms.surface_tension or terms.recoil",
+                       {"terms.surface_tension", "terms.recoil"},
+                       [](const Scene& s, int) { return s.terms.surface_tension || s.terms.recoil; }};
+  const Need prescribed = {"surface.recoil_pressure_pa > 0",
+                           {"surface.recoil_pressure_pa"},
+                           [](const Scene& s, int) { return s.surface.recoil_pressure > 0; }};
+  return {
+      word<SurfaceEntry>("surface.entry", {{"csf", SurfaceEntry::csf}, {"pressure", SurfaceEntry::pressure}},
+                         MELTRAY_AT(surface.entry),
+                         "Surface forces act as volume forces (csf) or as the pressure at the surface.")
+          .only_if(forces),
+      word<RecoilOnset>("surface.recoil_onset",
+                        {{"smooth", RecoilOnset::smooth},
+                         {"cutoff", RecoilOnset::cutoff},
+                         {"ambient", RecoilOnset::ambient}},
+                        MELTRAY_AT(surface.recoil_onset),
+                        "Recoil below the boiling temperature: as it is, none, or less the ambient pressure.")
+          .only_if(recoil_from_vapour()),
+      number("surface.recoil_coefficient", "", above_to(0, 1), MELTRAY_AT(surface.recoil_coefficient),
+             "Recoil pressure over saturation pressure.")
+          .only_if(recoil_from_vapour()),
+      number("surface.evaporation_coefficient", "", above_to(0, 1),
+             MELTRAY_AT(surface.evaporation_coefficient),
+             "Share of the vapour that does not condense again, 1 - beta_r.")
+          .only_if(term("evaporation", &Terms::evaporation)),
+      number("surface.recoil_pressure_pa", "Pa", at_least(0), MELTRAY_AT(surface.recoil_pressure),
+             "Uniform recoil pressure instead of that of the vapour; 0: that of the vapour.")
+          .only_if(term("recoil", &Terms::recoil)),
+      number("surface.recoil_ramp_s", "s", at_least(0), MELTRAY_AT(surface.recoil_ramp),
+             "Time in which recoil_pressure_pa grows from zero.")
+          .only_if(prescribed),
+      number("surface.activation_ramp_k", "K", at_least(0), MELTRAY_AT(surface.activation_ramp),
+             "Range above the melting temperature over which surface tension sets in.")
+          .only_if(term("surface_tension", &Terms::surface_tension)),
+      number("surface.ambient_temperature_k", "K", above_to(0, 1e5), MELTRAY_AT(surface.ambient_temperature),
+             "Temperature that the surface radiates to.")
+          .only_if(term("radiation", &Terms::radiation)),
+  };
+}
+
+std::vector<Key> heat_keys() {
+  return {
+      number("heat.initial_temperature_k", "K", above_to(0, 1e5), MELTRAY_AT(heat.initial_temperature),
+             "Temperature at the start of bodies that give none."),
+      number("heat.bulk_interval_s", "s", at_least(0), MELTRAY_AT(heat.bulk_interval),
+             "Interval at which solid particles away from the melt exchange heat; 0: in every step.")
+          .only_if(term("conduction", &Terms::conduction)),
+  };
+}
+
+}  // namespace meltray::scene

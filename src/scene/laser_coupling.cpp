@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "scene/laser_coupling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meltray::scene {
+
+namespace {
+
+/// Hits reach surface particles within this many spacings: a hit on the isosurface is half a spacing above the
+/// centres of the outermost layer and at most 0.9 spacings from the nearest of them.
+constexpr double kDepositRadius = 1.3;
+
+laser::TraceOptions options_of(const Scene& scene) {
+  laser::TraceOptions o = scene.laser->trace;
+  o.index_solid = scene.material.index_solid;
+  o.index_liquid = scene.material.index_liquid;
+  return o;
+}
+
+}  // namespace
+
+LaserCoupling::LaserCoupling(const Scene& scene, const terms::SceneConstants& constants)
+    : scene_(scene), constants_(constants), beam_(scene.laser->beam) {}
+
+bool LaserCoupling::due(double t, double largest_motion) const {
+  return stale_ || t >= next_trace_ || motion_ + largest_motion > scene_.laser->retrace_motion * constants_.spacing;
+}
+
+laser::Box LaserCoupling::region(double t, const Particles& particles, const PatchSelector& selector) const {
+  // The footprint of the beam on the top, the melt around it and where light went last time, with a margin.
+  const double margin = 6 * constants_.spacing;
+  const laser::BeamSpec& spec = beam_.spec();
+  const Vec3 focus = beam_.focus(t), axis = beam_.axis();
+  const double reach = 2.5 * beam_.radius(std::abs(spec.focus_z)) + margin;
+  Vec3 low = focus - Vec3(reach, reach, 0), high = focus + Vec3(reach, reach, 0);
+  low[2] = -margin;
+  high[2] = margin;
+  const double window = 0.6 * spec.focal_diameter + 10 * constants_.spacing;
+  double deepest = 0;
+  for (const laser::Hit& hit : hits_) deepest = std::min(deepest, hit.position[2]);
+  for (Index i : selector.moving()) {
+    const double z = particles.x[2][i], on_axis = focus[0] + axis[0] / -axis[2] * (spec.focus_z - z);
+    if (std::abs(particles.x[1][i] - focus[1]) > window || std::abs(particles.x[0][i] - on_axis) > window) continue;
+    deepest = std::min(deepest, z);
+    high[2] = std::max(high[2], z + margin);
+  }
+  low[2] = deepest - margin;
+  const double shift = axis[0] / -axis[2] * (spec.focus_z - low[2]);
+  low[0] = std::min(low[0], low[0] + shift);
+  high[0] = std::max(high[0], high[0] + shift);
+  high[2] = std::min(high[2], scene_.domain.max[2]);
+  return {low.cwiseMax(scene_.domain.min), high.cwiseMin(scene_.domain.max)};
+}
+
+void LaserCoupling::trace(double t, const PatchSelector& selector, const Particles& particles) {
+  stale_ = false;
+  motion_ = 0;
+  traced_at_ = t;
+  next_trace_ = t + scene_.laser->retrace_interval;
+  const laser::Box box = region(t, particles, selector);
+  const double beyond = 3 * constants_.spacing;
+  selector.gather(particles, box.min - Vec3::Constant(beyond), box.max + Vec3::Constant(beyond), cloud_);
+  std::erase_if(cloud_, [&](Index i) { return particles.is_wall(i); });
+  for (int c = 0; c < 3; ++c) {
+    cx_[c].resize(cloud_.size());
+    for (std::size_t k = 0; k < cloud_.size(); ++k) cx_[c][k] = particles.x[c][cloud_[k]];
+  }
+  std::vector<std::uint8_t> liquid(cloud_.size());
+  for (std::size_t k = 0; k < cloud_.size(); ++k) liquid[k] = particles.is_liquid(cloud_[k]);
+  const laser::PointCloud cloud{{cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid.data(),
+                                constants_.spacing};
+  tracer_.set_mesh(laser::reconstruct_surface(cloud, box));
+
+  hits_.clear();
+  ledger_ = {};
+  lit_.clear();
+  if (beam_.power(t) <= 0) return;
+  const auto rays = beam_.rays(t, scene_.laser->trace.rays, box.max[2] + constants_.spacing);
+  laser::Trace trace = tracer_.trace(rays, options_of(scene_));
+  ledger_ = trace.ledger;
+  hits_ = std::move(trace.hits);
+  const double error = std::abs(ledger_.in - ledger_.absorbed - ledger_.escaped - ledger_.residual - ledger_.dropped);
+  budget_.worst = std::max(budget_.worst, error / ledger_.in);
+  ++budget_.traces;
+  budget_.dropped_rays += ledger_.dropped_rays;
+  std::vector<Index> near;
+  const double radius = (kDepositRadius + 0.5) * constants_.spacing;
+  for (const laser::Hit& hit : hits_)
+    selector.for_resting_near(particles, hit.position, radius, [&](Index i) { near.push_back(i); });
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  lit_ = std::move(near);
+}
+
+void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& power) {
+  power.assign(stage.size(), 0.0);
+  undeposited_ = 0;
+  if (hits_.empty()) return;
+  // Only surface particles take part; the cloud handed over is just them.
+  cloud_.clear();
+  weight_.clear();
+  for (Index i = 0; i < stage.size(); ++i)
+    if (stage.surface[i] > 0 && stage.heat[i] && !stage.loose[i]) {
+      cloud_.push_back(i);
+      weight_.push_back(stage.surface[i]);
+    }
+  for (int c = 0; c < 3; ++c) {
+    cx_[c].resize(cloud_.size());
+    for (std::size_t k = 0; k < cloud_.size(); ++k) cx_[c][k] = stage.patch->x[c][cloud_[k]];
+  }
+  cloud_power_.assign(cloud_.size(), 0.0);
+  const laser::PointCloud cloud{{cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr,
+                                constants_.spacing};
+  undeposited_ = laser::deposit(hits_, cloud, weight_.data(), kDepositRadius * constants_.spacing, cloud_power_.data());
+  for (std::size_t k = 0; k < cloud_.size(); ++k) power[cloud_[k]] = cloud_power_[k];
+}
+
+void LaserCoupling::book(double dt) {
+  budget_.in += dt * ledger_.in;
+  budget_.absorbed += dt * ledger_.absorbed;
+  budget_.escaped += dt * ledger_.escaped;
+  budget_.residual += dt * ledger_.residual;
+  budget_.dropped += dt * ledger_.dropped;
+}
+
+LaserState LaserCoupling::state(double t) const {
+  return {beam_.power(t), ledger_.absorbed, ledger_.escaped, ledger_.residual};
+}
+
+void LaserCoupling::archive(Archive& a) {
+  a.value("laser/in", budget_.in);
+  a.value("laser/absorbed", budget_.absorbed);
+  a.value("laser/escaped", budget_.escaped);
+  a.value("laser/residual", budget_.residual);
+  a.value("laser/dropped", budget_.dropped);
+  a.value("laser/worst", budget_.worst);
+  a.value("laser/traces", budget_.traces);
+  a.value("laser/dropped_rays", budget_.dropped_rays);
+  a.value("laser/ledger_in", ledger_.in);
+  a.value("laser/ledger_absorbed", ledger_.absorbed);
+  a.value("laser/ledger_escaped", ledger_.escaped);
+  a.value("laser/ledger_residual", ledger_.residual);
+  // The region of the next trace depends on how deep light went: the hits are part of the state.
+  std::vector<double> hits;
+  for (const laser::Hit& h : hits_) hits.insert(hits.end(), {h.position[0], h.position[1], h.position[2], h.power});
+  a.values("laser/hits", hits);
+  if (a.loading()) {
+    hits_.clear();
+    for (std::size_t k = 0; k + 3 < hits.size(); k += 4)
+      hits_.push_back({Vec3(hits[k], hits[k + 1], hits[k + 2]), hits[k + 3]});
+  }
+  stale_ = true;
+}
+
+}  // namespace meltray::scene

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "meltray/laser/laser.hpp"
+#include "meltray/particles/patch.hpp"
+#include "meltray/scene/simulation.hpp"
+#include "meltray/terms/stage.hpp"
+
+namespace meltray::scene {
+
+/// Keeps the rays' hits on the surface up to date and turns them into power per particle.
+class LaserCoupling {
+ public:
+  LaserCoupling(const Scene& scene, const terms::SceneConstants& constants);
+
+  /// True where a trace is due: the interval has passed, the surface or the beam has moved, or none was made.
+  bool due(double t, double largest_motion) const;
+  /// Reconstructs the surface around the beam and traces the rays.
+  void trace(double t, const PatchSelector& selector, const Particles& particles);
+  /// Power per patch particle [W]; hits sit on the surface and pass to the particles that are there now.
+  void deposit(const terms::Stage& stage, std::vector<double>& power);
+  /// Books the energy of a step of length dt.
+  void book(double dt);
+
+  /// Resting particles that hits may heat: they belong in the patch.
+  const std::vector<Index>& lit() const { return lit_; }
+  bool dark() const { return hits_.empty(); }
+  const laser::Tracer& tracer() const { return tracer_; }
+  const laser::Beam& beam() const { return beam_; }
+  const LaserBudget& budget() const { return budget_; }
+  LaserState state(double t) const;
+  double undeposited() const { return undeposited_; }   ///< [W] at the last deposit
+  double motion_budget() const { return motion_; }
+  void add_motion(double m) { motion_ += m; }
+  /// Saving and loading force a new trace at the next step.
+  void archive(Archive& a);
+
+ private:
+  laser::Box region(double t, const Particles& particles, const PatchSelector& selector) const;
+
+  const Scene& scene_;
+  const terms::SceneConstants& constants_;
+  laser::Beam beam_;
+  laser::Tracer tracer_;
+  std::vector<laser::Hit> hits_;
+  laser::Ledger ledger_;
+  LaserBudget budget_;
+  std::vector<Index> lit_;
+  double next_trace_ = 0, motion_ = 0, traced_at_ = 0, undeposited_ = 0;
+  bool stale_ = true;
+  std::vector<double> weight_, cloud_power_, cx_[3];
+  std::vector<Index> cloud_;
+};
+
+}  // namespace meltray::scene

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: MIT
+#include "scene/model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "meltray/core/constants.hpp"
+#include "meltray/core/errors.hpp"
+
+namespace meltray::scene {
+
+namespace {
+
+constexpr int kLinearIterations = 500;
+
+terms::RecoilOnset onset(RecoilOnset o) {
+  switch (o) {
+    case RecoilOnset::smooth: return terms::RecoilOnset::smooth;
+    case RecoilOnset::cutoff: return terms::RecoilOnset::cutoff;
+    case RecoilOnset::ambient: return terms::RecoilOnset::ambient;
+  }
+  return terms::RecoilOnset::smooth;
+}
+
+bool initially_implicit(PartitionChoice c) { return c == PartitionChoice::implicit_; }
+
+}  // namespace
+
+Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers)
+    : scene_(scene), constants_(constants), timers_(timers) {
+  const Flow& flow = scene.flow;
+  interface_ = {flow.interface_viscosity_free, flow.interface_viscosity_solid, flow.reference_speed,
+                flow.interface_viscosity_ramp};
+  losses_ = {scene.terms.evaporation, scene.terms.radiation, scene.surface.evaporation_coefficient,
+             scene.surface.ambient_temperature};
+  tension_.ramp = scene.surface.activation_ramp;
+  wetting_.contact_angle_deg = scene.material.contact_angle_deg;
+  recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient, scene.surface.recoil_pressure,
+             scene.surface.recoil_ramp};
+  buoyancy_ = {scene.terms.gravity, scene.terms.buoyancy, scene.domain.gravity};
+  shifting_.coefficient = flow.shifting;
+  projection_options_ = {scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf
+                                                                  : terms::SurfaceEntry::pressure,
+                         flow.pressure_tolerance, flow.pressure_max_iterations};
+  drift_time = flow.drift_time > 0 ? flow.drift_time
+                                   : 0.2 * constants.spacing / std::max(flow.reference_speed, 1e-300);
+  partitions = {initially_implicit(scene.time.conduction), initially_implicit(scene.time.viscosity),
+                initially_implicit(scene.time.interface_viscosity), initially_implicit(scene.time.evaporation)};
+  stage.constants = &constants_;
+  stage.patch = &patch;
+  stage.pairs = &pairs;
+}
+
+bool Model::needs_surface() const {
+  const Terms& t = scene_.terms;
+  return t.pressure || t.surface_tension || t.recoil || t.evaporation || t.radiation || t.marangoni ||
+         scene_.laser.has_value();
+}
+
+terms::ViscousChoice Model::viscous(bool implicit_part) const {
+  return {scene_.terms.viscosity && partitions.viscosity == implicit_part,
+          scene_.terms.interface_viscosity && partitions.interface_viscosity == implicit_part};
+}
+
+bool Model::has_implicit() const {
+  return viscous(true).any() || (scene_.terms.conduction && partitions.conduction) ||
+         ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
+}
+
+std::size_t Model::powers_begin() const {
+  return (flows() ? 2 * constants_.dim * stage.moving.size() : 0) + stage.heated.size();
+}
+
+void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const {
+  const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
+  const int dim = constants_.dim;
+  y.resize(powers_begin() + kPowers);
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t k = 0; k < nm; ++k) {
+      y[c * nm + k] = patch.x[c][stage.moving[k]];
+      y[(dim + c) * nm + k] = patch.v[c][stage.moving[k]];
+    }
+  for (std::size_t k = 0; k < nh; ++k) y[2 * dim * nm + k] = patch.h[stage.heated[k]];
+  for (std::size_t k = 0; k < kPowers; ++k) y[powers_begin() + k] = 0;
+
+  const Time& time = scene_.time;
+  fields.clear();
+  const auto add = [&](const char* name, std::size_t begin, std::size_t size, double rtol, double atol) {
+    if (size > 0) fields.push_back({name, begin, size, rtol, atol, {}});
+  };
+  // Positions and enthalpies have no natural zero: their error counts absolutely.
+  add("position", 0, dim * nm, 0.0, time.atol_position * constants_.spacing);
+  add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
+  add("enthalpy", 2 * dim * nm, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
+  add("powers", powers_begin(), kPowers, 0.0, 1e100);
+}
+
+void Model::invalidate() {
+  geometry_valid_ = implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+  last_y_.clear();
+}
+
+void Model::evaluate(double t, const double* y) {
+  const std::size_t n = powers_begin(), nm = flows() ? stage.moving.size() : 0;
+  const int dim = constants_.dim;
+  const bool same_x = geometry_valid_ && last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin());
+  const bool same_h = last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
+  const bool same_v =
+      last_y_.size() == n && std::equal(y + dim * nm, y + 2 * dim * nm, last_y_.begin() + dim * nm);
+  if (same_x && same_h && same_v && t == stage.t) return;
+  last_y_.assign(y, y + n);
+  stage.t = t;
+  for (int c = 0; c < dim; ++c) {
+    const double *const x = y + c * nm, *const v = y + (dim + c) * nm;
+    parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
+      patch.x[c][stage.moving[k]] = x[k];
+      patch.v[c][stage.moving[k]] = v[k];
+    });
+  }
+  const double* const h = y + 2 * dim * nm;
+  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
+    patch.h[stage.heated[k]] = h[k];
+  });
+
+  if (!same_x) {
+    const auto timer = timers_.measure(Part::neighbours);
+    pairs.refresh(patch, constants_.kernel);
+  }
+  if (!same_h || !same_x)
+    parallel_for(stage.size(), [&](Index i) {
+      stage.temperature[i] = constants_.material.temperature(patch.h[i]);
+    });
+  if (needs_surface() && (!same_x || !same_h || t != 0)) {
+    const auto timer = timers_.measure(Part::surface);
+    if (!same_x) {
+      terms::compute_surface(stage);
+      if (scene_.terms.wetting) wetting_.turn_normals(stage);
+    }
+    if (scene_.terms.surface_tension || scene_.terms.recoil) {
+      if (scene_.terms.surface_tension)
+        tension_.pressure(stage, surface_pressure_);
+      else
+        surface_pressure_.assign(stage.size(), 0.0);
+      if (scene_.terms.recoil)
+        parallel_for(stage.size(), [&](Index i) {
+          if (patch.liquid[i] && stage.surface[i] > 0)
+            surface_pressure_[i] += recoil_.pressure(constants_.material, stage.temperature[i], t);
+        });
+      terms::average_surface_pressure(stage, surface_pressure_);
+    }
+  }
+  geometry_valid_ = true;
+  if (!same_x || !same_h) implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+}
+
+terms::Rates Model::rates_into(double*) {
+  const Index n = stage.size();
+  for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(n, 0.0);
+  heating_.assign(n, 0.0);
+  return {view(acceleration_), heating_.data()};
+}
+
+void Model::finish_rates(const double* y, double* rate, const terms::Powers& powers, bool transport) {
+  const std::size_t nm = flows() ? stage.moving.size() : 0;
+  const int dim = constants_.dim;
+  for (int c = 0; c < dim; ++c) {
+    const double* const v = y + (dim + c) * nm;
+    double *const dx = rate + c * nm, *const dv = rate + (dim + c) * nm;
+    const bool shifted = transport && shifting_.coefficient > 0;
+    parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      dx[k] = transport ? v[k] + (shifted ? transport_[c][i] : 0.0) : 0.0;
+      dv[k] = acceleration_[c][i];
+    });
+  }
+  double* const dh = rate + 2 * dim * nm;
+  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
+    dh[k] = heating_[stage.heated[k]];
+  });
+  double* const p = rate + powers_begin();
+  p[0] = powers.evaporation;
+  p[1] = powers.radiation;
+  p[2] = powers.boundary;
+  p[3] = powers.laser;
+  p[4] = powers.evaporated_mass;
+}
+
+void Model::add_forces(terms::Rates& rates, bool implicit_part, bool all) {
+  if (viscous(implicit_part).any() || (all && viscous(!implicit_part).any())) {
+    const auto timer = timers_.measure(Part::viscosity);
+    const auto add = [&](bool part) {
+      if (!viscous(part).any()) return;
+      auto& op = part ? viscous_implicit_ : viscous_explicit_;
+      bool& valid = part ? implicit_viscous_valid_ : explicit_viscous_valid_;
+      if (!valid) op.assemble(stage, viscous(part), interface_);
+      valid = true;
+      op.add_acceleration(stage, view(static_cast<const Patch&>(patch).v), rates.acceleration);
+    };
+    add(implicit_part);
+    if (all) add(!implicit_part);
+  }
+  if (implicit_part) return;
+  const auto timer = timers_.measure(Part::forces);
+  buoyancy_.add_acceleration(stage, rates.acceleration);
+  if (scene_.terms.marangoni) marangoni_.add_acceleration(stage, rates.acceleration);
+}
+
+void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Powers& powers) {
+  const auto timer = timers_.measure(Part::heat);
+  if (scene_.terms.conduction && partitions.conduction == implicit_part) {
+    if (!conduction_valid_) conduction_.assemble(stage);
+    conduction_valid_ = true;
+    powers.boundary += conduction_.add_heating(stage, rates.heating);
+  }
+  if ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses == implicit_part)
+    losses_.add_heating(stage, rates.heating, powers);
+  if (!implicit_part && !laser_power.empty()) {
+    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
+      const Index i = stage.heated[k];
+      rates.heating[i] += laser_power[i] / patch.mass[i];
+    });
+    powers.laser += parallel_sum(static_cast<std::ptrdiff_t>(stage.heated.size()),
+                                 [&](std::ptrdiff_t k) { return laser_power[stage.heated[k]]; });
+  }
+}
+
+void Model::explicit_rate(double t, const double* y, double* rate) {
+  evaluate(t, y);
+  terms::Rates rates = rates_into(rate);
+  terms::Powers powers;
+  if (flows()) {
+    const bool in_stage = scene_.flow.projection == Projection::stage;
+    add_forces(rates, false, in_stage);
+    if (shifting_.coefficient > 0) {
+      const auto timer = timers_.measure(Part::forces);
+      for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
+      shifting_.add_rates(stage, view(transport_), rates.acceleration);
+    }
+    if (in_stage) pressure_in_stage(rates);
+  }
+  add_heat(rates, false, powers);
+  finish_rates(y, rate, powers, true);
+}
+
+void Model::implicit_rate(double t, const double* y, double* rate) {
+  evaluate(t, y);
+  terms::Rates rates = rates_into(rate);
+  terms::Powers powers;
+  if (flows()) add_forces(rates, true, false);
+  add_heat(rates, true, powers);
+  finish_rates(y, rate, powers, false);
+}
+
+bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
+  evaluate(t, y);
+  const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
+  const int dim = constants_.dim;
+  if (nm > 0 && viscous(true).any()) {
+    const auto timer = timers_.measure(Part::viscosity);
+    if (!implicit_viscous_valid_) viscous_implicit_.assemble(stage, viscous(true), interface_);
+    implicit_viscous_valid_ = true;
+    for (int c = 0; c < dim; ++c) {
+      solve_b_[c].assign(stage.size(), 0.0);
+      solve_x_[c].assign(stage.size(), 0.0);
+      for (std::size_t k = 0; k < nm; ++k)
+        solve_b_[c][stage.moving[k]] = solve_x_[c][stage.moving[k]] = b[(dim + c) * nm + k];
+    }
+    const int iterations =
+        viscous_implicit_.solve(stage, gamma, view(static_cast<const Components&>(solve_b_)), view(solve_x_),
+                                scene_.time.linear_tolerance, kLinearIterations);
+    if (iterations < 0) return false;
+    counters->viscous_iterations += iterations;
+    for (int c = 0; c < dim; ++c)
+      for (std::size_t k = 0; k < nm; ++k) b[(dim + c) * nm + k] = solve_x_[c][stage.moving[k]];
+  }
+  const bool losses = (scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses;
+  const bool conducts = scene_.terms.conduction && partitions.conduction;
+  if (!losses && !conducts) return true;
+  const auto timer = timers_.measure(Part::heat);
+  double* const bh = b + 2 * dim * nm;
+  loss_slope_.assign(stage.size(), 0.0);
+  if (losses) losses_.slope(stage, loss_slope_.data());
+  solve_h_x_.assign(stage.size(), 0.0);
+  if (conducts) {
+    if (!conduction_valid_) conduction_.assemble(stage);
+    conduction_valid_ = true;
+    solve_h_b_.assign(stage.size(), 0.0);
+    for (std::size_t k = 0; k < nh; ++k) solve_h_b_[stage.heated[k]] = bh[k];
+    const int iterations = conduction_.solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
+                                             scene_.time.linear_tolerance, kLinearIterations);
+    if (iterations < 0) return false;
+    counters->heat_iterations += iterations;
+    for (std::size_t k = 0; k < nh; ++k) bh[k] = solve_h_x_[stage.heated[k]];
+  } else {
+    for (std::size_t k = 0; k < nh; ++k) {
+      const Index i = stage.heated[k];
+      bh[k] /= 1 - gamma * loss_slope_[i] / patch.mass[i] * constants_.material.temperature_slope(patch.h[i]);
+    }
+  }
+  return true;
+}
+
+}  // namespace meltray::scene

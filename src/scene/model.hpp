@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "meltray/core/timers.hpp"
+#include "meltray/scene/scene.hpp"
+#include "meltray/scene/simulation.hpp"
+#include "meltray/terms/conduction.hpp"
+#include "meltray/terms/evaporation.hpp"
+#include "meltray/terms/pressure/projection.hpp"
+#include "meltray/terms/shifting.hpp"
+#include "meltray/terms/stage.hpp"
+#include "meltray/terms/surface_forces.hpp"
+#include "meltray/terms/viscosity.hpp"
+#include "meltray/time/integrator.hpp"
+
+namespace meltray::scene {
+
+/// Where each term that can be implicit is integrated at present; "auto" terms move with their stiffness.
+struct Partitions {
+  bool conduction = false, viscosity = false, interface_viscosity = false, losses = false;  ///< true = implicit
+  bool operator==(const Partitions&) const = default;
+};
+
+/// The active terms of a scene as an ODE on the patch: y = [x | v | h | powers] of the particles that move and
+/// those that exchange heat; f_E and f_I are sums over the terms of each partition.
+class Model : public OdeProblem {
+ public:
+  Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
+
+  /// Copies the patch into y and describes its fields. The stage must have been prepared for the patch.
+  void pack(std::vector<double>& y, std::vector<StateField>& fields) const;
+  /// Copies y into the patch and makes geometry, temperatures and surface those of y.
+  void evaluate(double t, const double* y);
+  /// Forgets what evaluate() may reuse; call when the patch or its lists have changed.
+  void invalidate();
+  /// One projection over a step that has just been taken: Eq. (6) at the patch's positions; corrects v and x.
+  void project(double t, double dt, const std::vector<double>& y);
+  /// Chooses the partition of "auto" terms from their stiffness against the step expected next.
+  void choose_partitions(double dt);
+
+  bool has_implicit() const override;
+  void explicit_rate(double t, const double* y, double* rate) override;
+  void implicit_rate(double t, const double* y, double* rate) override;
+  bool solve_implicit(double t, const double* y, double gamma, double* b) override;
+  StepLimit stable_step(double t, const double* y) override;
+  std::vector<StepLimit> step_limits();
+
+  /// Powers integrated over the last step, from the tail of y [J and kg].
+  static constexpr std::size_t kPowers = 5;
+  std::size_t powers_begin() const;
+  bool flows() const { return scene_.terms.pressure; }
+
+  terms::Stage stage;
+  Patch patch;
+  sph::PairList pairs;
+  std::vector<double> laser_power;   ///< per patch particle [W]; empty without a laser
+  Partitions partitions;
+  double largest_acceleration = 0;   ///< of the last projection [m/s^2]
+  double drift_time = 0;             ///< of the `stage` projection [s]
+  Counters* counters = nullptr;
+  Vec3 pressure_impulse = Vec3::Zero();  ///< of the last step's projection [kg m/s]
+  terms::Projection projection;
+
+ private:
+  terms::Rates rates_into(double* rate);
+  void finish_rates(const double* y, double* rate, const terms::Powers& powers, bool transport);
+  void add_forces(terms::Rates& rates, bool implicit_part, bool all);
+  void add_heat(terms::Rates& rates, bool implicit_part, terms::Powers& powers);
+  void pressure_in_stage(terms::Rates& rates);
+  void count_solve(const solve::SolveReport& report, double t);
+  terms::ViscousChoice viscous(bool implicit_part) const;
+  bool needs_surface() const;
+
+  const Scene& scene_;
+  const terms::SceneConstants& constants_;
+  Timers& timers_;
+
+  terms::InterfaceViscosityParameters interface_;
+  terms::ViscousOperator viscous_explicit_, viscous_implicit_;
+  terms::ConductionOperator conduction_;
+  terms::SurfaceLosses losses_;
+  terms::SurfaceTension tension_;
+  terms::Wetting wetting_;
+  terms::Recoil recoil_;
+  terms::Marangoni marangoni_;
+  terms::Buoyancy buoyancy_;
+  terms::Shifting shifting_;
+  terms::ProjectionOptions projection_options_;
+
+  Components acceleration_, transport_;     ///< scratch, one entry per patch particle
+  std::vector<double> heating_, surface_pressure_, loss_slope_, source_, other_, start_x_;
+  Components solve_b_, solve_x_;
+  std::vector<double> solve_h_b_, solve_h_x_;
+  std::vector<double> last_y_;               ///< state that stage and patch stand for
+  bool geometry_valid_ = false, implicit_viscous_valid_ = false, explicit_viscous_valid_ = false,
+       conduction_valid_ = false;
+};
+
+}  // namespace meltray::scene

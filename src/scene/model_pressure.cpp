@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "meltray/core/errors.hpp"
+#include "scene/model.hpp"
+
+namespace meltray::scene {
+
+void Model::count_solve(const solve::SolveReport& report, double t) {
+  ++counters->pressure_solves;
+  counters->pressure_iterations += report.iterations;
+  if (!std::isfinite(report.residual))
+    throw NumericalFailure(fmt::format("pressure: the Poisson solve gave a residual of {} at t = {:.9g} s with {} rows",
+                                       report.residual, t, projection.rows()));
+  if (!report.converged) ++counters->pressure_at_limit;
+}
+
+void Model::project(double t, double dt, const std::vector<double>& y) {
+  evaluate(t, y.data());
+  const auto timer = timers_.measure(Part::pressure);
+  projection.assemble(stage);
+  largest_acceleration = 0;
+  pressure_impulse = Vec3::Zero();
+  if (projection.rows() == 0) return;
+  // Eq. (6): div(grad p / rho) = div v* / dt, less the divergence that undoes a density error over drift_time_ratio
+  // steps.
+  projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
+  projection.compression(stage, other_);
+  const double relax = 1 / (scene_.flow.drift_time_ratio * dt);
+  for (Index r = 0; r < projection.rows(); ++r) source_[r] = (source_[r] - relax * other_[r]) / dt;
+  count_solve(projection.solve(stage, source_, projection_options_), t);
+
+  for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(stage.size(), 0.0);
+  projection.add_acceleration(stage, projection_options_.entry, view(acceleration_));
+  const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
+  for (int c = 0; c < constants_.dim; ++c) {
+    pressure_impulse[c] = dt * parallel_sum(count, [&](std::ptrdiff_t k) {
+                            const Index i = stage.moving[k];
+                            return patch.mass[i] * acceleration_[c][i];
+                          });
+    // x^{n+1} = x^n + dt (v^n + v^{n+1})/2 (Cummins & Rudman 1999): x already moved with v*.
+    parallel_for(count, [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      patch.v[c][i] += dt * acceleration_[c][i];
+      patch.x[c][i] += 0.5 * dt * dt * acceleration_[c][i];
+    });
+  }
+  largest_acceleration = parallel_max(count, 0.0, [&](std::ptrdiff_t k) {
+    const Index i = stage.moving[k];
+    double a2 = 0;
+    for (int c = 0; c < constants_.dim; ++c) a2 += acceleration_[c][i] * acceleration_[c][i];
+    return stage.loose[i] ? 0.0 : std::sqrt(a2);
+  });
+  invalidate();
+}
+
+void Model::pressure_in_stage(terms::Rates& rates) {
+  // Lagrangian particles: D(div v)/Dt = div a + dDiv(v), so that div(grad p/rho) = div f* + dDiv(v) + div v/tau
+  // keeps div v = 0 and pulls any error back with the fixed time constant tau.
+  const auto timer = timers_.measure(Part::pressure);
+  projection.assemble(stage);
+  if (projection.rows() == 0) return;
+  const auto v = view(static_cast<const Patch&>(patch).v);
+  projection.divergence(stage, view(static_cast<const Components&>(acceleration_)), source_);
+  projection.divergence_rate(stage, v, other_);
+  for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r];
+  projection.divergence(stage, v, other_);
+  for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r] / drift_time;
+  projection.compression(stage, other_);
+  const double relax = 1 / (drift_time * drift_time * scene_.flow.drift_time_ratio);
+  for (Index r = 0; r < projection.rows(); ++r) source_[r] -= relax * other_[r];
+  count_solve(projection.solve(stage, source_, projection_options_), stage.t);
+  projection.add_acceleration(stage, projection_options_.entry, rates.acceleration);
+}
+
+std::vector<StepLimit> Model::step_limits() {
+  std::vector<StepLimit> limits;
+  const Time& time = scene_.time;
+  const double h = constants_.smoothing, rho = constants_.density;
+  const auto moving = static_cast<std::ptrdiff_t>(stage.moving.size());
+  if (flows() && moving > 0) {
+    const double speed = parallel_max(moving, 0.0, [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      if (stage.loose[i]) return 0.0;
+      double v2 = 0;
+      for (int c = 0; c < constants_.dim; ++c) v2 += patch.v[c][i] * patch.v[c][i];
+      return std::sqrt(v2);
+    });
+    if (speed > 0) limits.push_back({time.cfl_advective * h / speed, "advective"});
+    if (scene_.terms.surface_tension) {
+      const double sigma = constants_.material.sigma(constants_.melting_temperature());
+      limits.push_back({time.cfl_capillary * std::sqrt(rho * h * h * h / (2 * M_PI * sigma)), "capillary"});
+    }
+    if (largest_acceleration > 0)
+      limits.push_back({time.cfl_force * std::sqrt(h / largest_acceleration), "force"});
+    if (viscous(false).any()) {
+      if (!explicit_viscous_valid_) viscous_explicit_.assemble(stage, viscous(false), interface_);
+      explicit_viscous_valid_ = true;
+      const double rate = viscous_explicit_.rate(stage);
+      if (rate > 0) limits.push_back({time.cfl_viscous / rate, "viscous"});
+    }
+  }
+  if (scene_.terms.conduction && !partitions.conduction && !stage.heated.empty()) {
+    if (!conduction_valid_) conduction_.assemble(stage);
+    conduction_valid_ = true;
+    const double rate = conduction_.rate(stage);
+    if (rate > 0) limits.push_back({time.cfl_thermal / rate, "thermal"});
+  }
+  if ((scene_.terms.evaporation || scene_.terms.radiation) && !partitions.losses) {
+    const double rate = losses_.rate(stage);
+    if (rate > 0) limits.push_back({time.cfl_thermal / rate, "evaporation"});
+  }
+  if (scene_.laser && scene_.laser->beam.feed > 0)
+    limits.push_back({time.beam_travel * 0.5 * scene_.laser->beam.focal_diameter / scene_.laser->beam.feed, "beam"});
+  return limits;
+}
+
+StepLimit Model::stable_step(double t, const double* y) {
+  evaluate(t, y);
+  StepLimit least;
+  for (const StepLimit& limit : step_limits())
+    if (limit.seconds < least.seconds) least = limit;
+  return least;
+}
+
+void Model::choose_partitions(double dt) {
+  // An explicit term is stable below 1/rate; it moves to the implicit side when it would set the step, and back
+  // when it is well below, so that the choice does not flicker.
+  const auto choose = [&](PartitionChoice choice, bool& implicit_part, auto&& rate) {
+    if (choice != PartitionChoice::automatic) return;
+    const double stiffness = rate() * dt;
+    if (stiffness > 0.6) implicit_part = true;
+    if (stiffness < 0.3) implicit_part = false;
+  };
+  const Time& time = scene_.time;
+  if (scene_.terms.conduction && !stage.heated.empty())
+    choose(time.conduction, partitions.conduction, [&] {
+      if (!conduction_valid_) conduction_.assemble(stage);
+      conduction_valid_ = true;
+      return conduction_.rate(stage);
+    });
+  if (scene_.terms.evaporation || scene_.terms.radiation)
+    choose(time.evaporation, partitions.losses, [&] { return losses_.rate(stage); });
+  if (!flows() || stage.moving.empty()) return;
+  terms::ViscousOperator probe;
+  const auto rate_of = [&](terms::ViscousChoice c) {
+    probe.assemble(stage, c, interface_);
+    return probe.rate(stage);
+  };
+  if (scene_.terms.viscosity)
+    choose(time.viscosity, partitions.viscosity, [&] { return rate_of({true, false}); });
+  if (scene_.terms.interface_viscosity)
+    choose(time.interface_viscosity, partitions.interface_viscosity, [&] { return rate_of({false, true}); });
+  implicit_viscous_valid_ = explicit_viscous_valid_ = false;
+}
+
+}  // namespace meltray::scene

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "meltray/terms/surface_forces.hpp"
+
+namespace meltray::terms {
+
+void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) const {
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    using Matrix = Eigen::Matrix<double, D, D>;
+    using Vector = Eigen::Matrix<double, D, 1>;
+    const double rho = s.constants->density;
+    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+      const Index i = s.moving[k];
+      if (s.surface[i] == 0 || s.loose[i]) return;
+      const double slope = s.constants->material.sigma_slope(s.temperature[i]);
+      if (slope == 0) return;
+      Matrix moment = Matrix::Zero();
+      Vector gradient = Vector::Zero();
+      s.pairs->for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+        const double vf = s.volume[p.j] * p.f;
+        for (int a = 0; a < D; ++a) {
+          gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];
+          for (int b = 0; b < D; ++b) moment(a, b) -= vf * p.x[a] * p.x[b];
+        }
+      });
+      // A thin sheet has no gradient across it: a small ridge keeps the renormalisation finite.
+      moment.diagonal().array() += 1e-3;
+      gradient = moment.inverse() * gradient;
+      Vector n;
+      double c2 = 0;
+      for (int c = 0; c < D; ++c) {
+        n[c] = s.normal[c][i];
+        c2 += s.grad_c[c][i] * s.grad_c[c][i];
+      }
+      gradient -= n * n.dot(gradient);
+      const double factor = slope * 2 * std::sqrt(c2) / (rho * s.constants->lattice.face_gradient);
+      for (int c = 0; c < D; ++c) acceleration[c][i] += factor * gradient[c];
+    });
+  });
+}
+
+void Buoyancy::add_acceleration(const Stage& s, const MutField& acceleration) const {
+  if (!gravity && !buoyant) return;
+  const Material& m = s.constants->material;
+  double* const az = acceleration[s.constants->dim - 1];
+  parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+    const Index i = s.moving[k];
+    double down = gravity ? g : 0.0;
+    if (buoyant) down -= g * m.expansion * (s.temperature[i] - m.expansion_reference);
+    az[i] -= down;
+  });
+}
+
+}  // namespace meltray::terms

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/terms/pressure/projection.hpp"
+
+#include <cmath>
+
+namespace meltray::terms {
+
+void Projection::assemble(const Stage& s) {
+  const Index n = s.size();
+  const auto& pairs = *s.pairs;
+  const auto& wall_of_melt = pairs.next_to_melt();
+  row_of_.assign(n, -1);
+  particle_of_.clear();
+  for (Index i = 0; i < n; ++i) {
+    if (s.loose[i] || !(s.patch->liquid[i] || wall_of_melt[i])) continue;
+    row_of_[i] = static_cast<Index>(particle_of_.size());
+    particle_of_.push_back(i);
+  }
+  const Index rows = static_cast<Index>(particle_of_.size());
+  matrix_.diagonal.resize(rows);
+  matrix_.start.resize(rows + 1);
+  ghost_.resize(rows);
+  matrix_.start[0] = 0;
+  for (Index r = 0; r < rows; ++r) {
+    const Index i = particle_of_[r];
+    Index count = 0;
+    for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += row_of_[pairs.neighbour(k)] >= 0;
+    matrix_.start[r + 1] = matrix_.start[r] + count;
+  }
+  matrix_.column.resize(matrix_.start[rows]);
+  matrix_.off.resize(matrix_.start[rows]);
+  const double scale = 2 / (s.constants->density * s.constants->lattice.second_moment);
+  const double full = scale * s.constants->lattice.laplacian;
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    parallel_for(rows, [&](Index r) {
+      const Index i = particle_of_[r];
+      Index out = matrix_.start[r];
+      double sum = 0;
+      pairs.for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+        const Index column = row_of_[p.j];
+        if (column < 0) return;
+        const double a = -scale * s.volume[i] * s.volume[p.j] * p.f;
+        matrix_.column[out] = column;
+        matrix_.off[out++] = a;
+        sum += a;
+      });
+      ghost_[r] = s.surface[i] * full * s.volume[i] * std::max(0.0, 1 - s.diagonal[i]);
+      matrix_.diagonal[r] = sum + ghost_[r];
+    });
+  });
+  floating_ = solve::floating_components(matrix_, ghost_, group_);
+}
+
+void Projection::divergence(const Stage& s, const ConstField& u, std::vector<double>& out) const {
+  out.resize(particle_of_.size());
+  const double scale = 1 / s.constants->lattice.second_moment;
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    const double* const volume = s.volume.data();
+    parallel_for(rows(), [&](Index r) {
+      const Index i = particle_of_[r];
+      double ui[D];
+      for (int c = 0; c < D; ++c) ui[c] = u[c][i];
+      const auto sum = s.pairs->sum_row<D, 1>(i, [&](const sph::Pair<D>& p) {
+        double dot = 0;
+        for (int c = 0; c < D; ++c) dot += (u[c][p.j] - ui[c]) * p.x[c];
+        return std::array<double, 1>{volume[p.j] * p.f * dot};
+      });
+      out[r] = scale * sum[0];
+    });
+  });
+}
+
+void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vector<double>& out) const {
+  // d/dt grad W_ij = F v_ij + (F'/r)(x_ij.v_ij) x_ij, contracted with v_ji = -v_ij.
+  out.resize(particle_of_.size());
+  const double scale = 1 / s.constants->lattice.second_moment;
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      parallel_for(rows(), [&](Index r) {
+        const Index i = particle_of_[r];
+        double sum = 0;
+        s.pairs->template for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+          double v2 = 0, xv = 0;
+          for (int c = 0; c < D; ++c) {
+            const double dv = v[c][i] - v[c][p.j];
+            v2 += dv * dv;
+            xv += dv * p.x[c];
+          }
+          const double inv_h = 2 / (s.patch->smoothing[i] + s.patch->smoothing[p.j]);
+          sum -= s.volume[p.j] * (p.f * v2 + Kernel::df(std::sqrt(p.r2()), inv_h) * xv * xv);
+        });
+        out[r] = scale * sum;
+      });
+    });
+  });
+}
+
+void Projection::compression(const Stage& s, std::vector<double>& out) const {
+  out.resize(particle_of_.size());
+  parallel_for(rows(), [&](Index r) {
+    const Index i = particle_of_[r];
+    const double excess = s.fill[i] - 1;
+    out[r] = s.patch->wall[i] ? 0.0 : s.fill[i] > 0.97 && s.surface[i] == 0 ? excess : std::max(0.0, excess);
+  });
+}
+
+solve::SolveReport Projection::solve(const Stage& s, const std::vector<double>& source,
+                                     const ProjectionOptions& options) {
+  rhs_.resize(rows());
+  x_.resize(rows());
+  parallel_for(rows(), [&](Index r) {
+    const Index i = particle_of_[r];
+    rhs_[r] = -s.volume[i] * source[r] + ghost_[r] * s.surface_pressure[i];
+    x_[r] = s.patch->pressure[i];
+  });
+  const auto remove_means = [&](std::vector<double>& a) {
+    std::vector<double> sum(floating_ + 1, 0.0);
+    std::vector<Index> count(floating_ + 1, 0);
+    for (Index r = 0; r < rows(); ++r) {
+      sum[group_[r]] += a[r];
+      ++count[group_[r]];
+    }
+    for (Index r = 0; r < rows(); ++r)
+      if (group_[r] > 0) a[r] -= sum[group_[r]] / count[group_[r]];
+  };
+  if (floating_ > 0) remove_means(rhs_);
+  const auto report = cg_.solve(matrix_, rhs_, x_, options.tolerance, options.max_iterations);
+  if (floating_ > 0) remove_means(x_);
+  std::fill(s.patch->pressure.begin(), s.patch->pressure.end(), 0.0);
+  parallel_for(rows(), [&](Index r) { s.patch->pressure[particle_of_[r]] = x_[r]; });
+  return report;
+}
+
+void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutField& acceleration) const {
+  const double rho = s.constants->density;
+  const double plain = 1 / s.constants->lattice.second_moment;
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    using Matrix = Eigen::Matrix<double, D, D>;
+    using Vector = Eigen::Matrix<double, D, 1>;
+    const double* const p = s.patch->pressure.data();
+    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+      const Index i = s.moving[k];
+      if (row_of_[i] < 0) return;
+      Vector gradient = Vector::Zero();
+      Matrix moment = Matrix::Zero();
+      const bool renormalise = entry == SurfaceEntry::pressure && s.surface[i] > 0;
+      s.pairs->for_row<D>(i, [&](Index, const sph::Pair<D>& q) {
+        const double vf = s.volume[q.j] * q.f;
+        if (row_of_[q.j] >= 0)
+          for (int c = 0; c < D; ++c) gradient[c] += vf * (p[q.j] - p[i]) * q.x[c];
+        if (renormalise)
+          for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) moment(a, b) -= vf * q.x[a] * q.x[b];
+      });
+      if (renormalise) {
+        moment.diagonal().array() += 1e-3;
+        gradient = moment.inverse() * gradient;
+      } else {
+        gradient *= plain;
+      }
+      if (entry == SurfaceEntry::csf) {
+        const double jump = 2 * s.surface[i] * (p[i] - s.surface_pressure[i]);
+        for (int c = 0; c < D; ++c) gradient[c] += jump * s.grad_c[c][i];
+      }
+      for (int c = 0; c < D; ++c) acceleration[c][i] -= gradient[c] / rho;
+    });
+  });
+}
+
+}  // namespace meltray::terms

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/terms/shifting.hpp"
+
+#include <cmath>
+
+namespace meltray::terms {
+
+void Shifting::add_rates(const Stage& s, const MutField& transport, const MutField& acceleration) const {
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      const ConstField v = view(static_cast<const Patch*>(s.patch)->v);
+      const double* const volume = s.volume.data();
+      const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / s.constants->smoothing);
+      parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+        const Index i = s.moving[k];
+        const double inside = 1 - s.surface[i];
+        if (inside == 0 || s.loose[i]) return;
+        const auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
+          const double ratio = p.w * inverse_w, r2 = ratio * ratio;
+          const double g = volume[p.j] * p.f * (1 + 0.2 * r2 * r2);
+          std::array<double, D> out;
+          for (int c = 0; c < D; ++c) out[c] = g * p.x[c];
+          return out;
+        });
+        double speed = 0;
+        for (int c = 0; c < D; ++c) speed += v[c][i] * v[c][i];
+        const double scale = -coefficient * s.constants->smoothing * std::sqrt(speed) * inside;
+        double du[D];
+        for (int c = 0; c < D; ++c) {
+          du[c] = scale * sum[c];
+          transport[c][i] += du[c];
+        }
+        const auto gain = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
+          double along = 0;
+          for (int c = 0; c < D; ++c) along += du[c] * p.x[c];
+          const double g = volume[p.j] * p.f * along;
+          std::array<double, D> out;
+          for (int c = 0; c < D; ++c) out[c] = g * (v[c][p.j] - v[c][i]);
+          return out;
+        });
+        for (int c = 0; c < D; ++c) acceleration[c][i] += gain[c];
+      });
+    });
+  });
+}
+
+}  // namespace meltray::terms

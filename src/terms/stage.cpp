@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/terms/stage.hpp"
+
+#include <cmath>
+
+namespace meltray::terms {
+
+namespace {
+
+constexpr double kSurfaceFull = 0.86, kSurfaceNone = 0.94;
+/// Fewest neighbours of a particle that takes part in the pressure field.
+constexpr Index kFewestNeighbours[2] = {6, 14};
+
+}  // namespace
+
+double Stage::area_of_spacing() const {
+  return constants->dim == 2 ? constants->spacing : constants->spacing * constants->spacing;
+}
+
+void prepare_stage(Stage& s) {
+  const Index n = s.size();
+  for (auto* a : {&s.volume, &s.temperature}) a->resize(n);
+  for (auto* a : {&s.fill, &s.diagonal, &s.surface, &s.area, &s.surface_pressure}) a->assign(n, 0.0);
+  for (int c = 0; c < s.constants->dim; ++c) {
+    s.grad_c[c].assign(n, 0.0);
+    s.normal[c].assign(n, 0.0);
+  }
+  s.loose.assign(n, 0);
+  s.moving.clear();
+  s.heated.clear();
+  for (Index i = 0; i < n; ++i) {
+    s.volume[i] = s.patch->mass[i] / s.constants->density;
+    if (s.patch->liquid[i]) s.moving.push_back(i);
+    if (s.heat[i]) s.heated.push_back(i);
+  }
+}
+
+void compute_surface(Stage& s) {
+  const auto& lattice = s.constants->lattice;
+  const double* const volume = s.volume.data();
+  const double face_scale = 1 / lattice.face_gradient;
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      const auto& pairs = *s.pairs;
+      parallel_for(s.size(), [&](Index i) {
+        const Index count = pairs.end(i) - pairs.begin(i);
+        s.loose[i] = 0;
+        s.surface[i] = s.area[i] = 0;
+        for (int c = 0; c < D; ++c) s.normal[c][i] = s.grad_c[c][i] = 0;
+        s.fill[i] = s.diagonal[i] = 1;
+        if (count == 0 && !s.patch->liquid[i]) return;  // not a row: asleep or only a neighbour
+        const auto sum = pairs.template sum_row<D, D + 2>(i, [&](const sph::Pair<D>& p) {
+          const double vf = volume[p.j] * p.f;
+          std::array<double, D + 2> out;
+          out[0] = volume[p.j] * p.w;
+          out[1] = -vf;
+          for (int c = 0; c < D; ++c) out[2 + c] = vf * p.x[c];
+          return out;
+        });
+        const double self = volume[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+        s.fill[i] = (sum[0] + self) / lattice.shepard;
+        s.diagonal[i] = sum[1] / lattice.laplacian;
+        s.loose[i] = s.patch->liquid[i] && count < kFewestNeighbours[D - 2];
+        double norm = 0;
+        for (int c = 0; c < D; ++c) {
+          s.grad_c[c][i] = sum[2 + c];
+          norm += sum[2 + c] * sum[2 + c];
+        }
+        norm = std::sqrt(norm);
+        const double t = std::clamp((kSurfaceNone - s.fill[i]) / (kSurfaceNone - kSurfaceFull), 0.0, 1.0);
+        // Dummies behind a face end where the box ends: that is not a free surface.
+        s.surface[i] = s.patch->wall[i] ? 0.0 : t * t * (3 - 2 * t);
+        if (s.surface[i] > 0 && norm > 0)
+          for (int c = 0; c < D; ++c) s.normal[c][i] = -sum[2 + c] / norm;
+        s.area[i] = s.surface[i] * 2 * norm * volume[i] * face_scale;
+      });
+    });
+  });
+}
+
+}  // namespace meltray::terms

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "meltray/terms/surface_forces.hpp"
+
+namespace meltray::terms {
+
+double SurfaceTension::activation(const Stage& s, Index i) const {
+  if (!s.patch->liquid[i] || s.loose[i]) return 0;
+  if (ramp <= 0) return 1;
+  return std::clamp((s.temperature[i] - s.constants->melting_temperature()) / ramp, 0.0, 1.0);
+}
+
+void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
+  out.resize(s.size());
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    const ConstField n = view(s.normal);
+    const double* const surface = s.surface.data();
+    const double tiny = 1e-12 * s.constants->spacing * s.constants->spacing;
+    parallel_for(s.size(), [&](Index i) {
+      out[i] = 0;
+      const double active = s.surface[i] > 0 ? activation(s, i) : 0.0;
+      if (active == 0) return;
+      double ni[D];
+      for (int c = 0; c < D; ++c) ni[c] = n[c][i];
+      const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::Pair<D>& p) {
+        double along = 0, bend = 0;
+        for (int c = 0; c < D; ++c) along += p.x[c] * ni[c];
+        double t2 = 0;
+        for (int c = 0; c < D; ++c) {
+          const double t = along * ni[c] - p.x[c];  // offset x_j - x_i in the tangent plane
+          bend += (n[c][p.j] - ni[c]) * t;
+          t2 += t * t;
+        }
+        const double weight = surface[p.j] * p.w;
+        return std::array<double, 2>{weight * bend, weight * t2};
+      });
+      const double kappa = sum[1] > tiny * s.constants->lattice.shepard ? (D - 1) * sum[0] / sum[1] : 0.0;
+      out[i] = active * s.constants->material.sigma(s.temperature[i]) * kappa;
+    });
+  });
+}
+
+void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      const double* const surface = s.surface.data();
+      const double* const p = pressure.data();
+      parallel_for(s.size(), [&](Index i) {
+        s.surface_pressure[i] = 0;
+        if (s.fill[i] >= 1 || s.loose[i] || s.pairs->begin(i) == s.pairs->end(i)) return;
+        const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::Pair<D>& q) {
+          const double weight = surface[q.j] * q.w;
+          return std::array<double, 2>{weight * p[q.j], weight};
+        });
+        const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+        const double weight = sum[1] + self;
+        if (weight > 0) s.surface_pressure[i] = (sum[0] + self * p[i]) / weight;
+      });
+    });
+  });
+}
+
+}  // namespace meltray::terms

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "meltray/core/constants.hpp"
+#include "meltray/terms/surface_forces.hpp"
+
+namespace meltray::terms {
+
+namespace {
+
+/// Wall colour (share of the Shepard sum that is solid) above which the normal is fully the triple-line one.
+constexpr double kWallColourFull = 0.2;
+
+}  // namespace
+
+void Wetting::turn_normals(Stage& s) const {
+  const double theta = contact_angle_deg * constants::pi / 180, sine = std::sin(theta), cosine = std::cos(theta);
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
+    const double* const volume = s.volume.data();
+    const std::uint8_t* const liquid = s.patch->liquid.data();
+    for (int c = 0; c < D; ++c) turned_[c].resize(s.moving.size());
+    parallel_for(count, [&](std::ptrdiff_t k) {
+      const Index i = s.moving[k];
+      for (int c = 0; c < D; ++c) turned_[c][k] = s.normal[c][i];
+      if (s.surface[i] == 0) return;
+      const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::Pair<D>& p) {
+        const double v = liquid[p.j] ? 0.0 : volume[p.j];
+        std::array<double, D + 1> out;
+        out[0] = v * p.w;
+        for (int c = 0; c < D; ++c) out[1 + c] = v * p.f * p.x[c];
+        return out;
+      });
+      const double colour = sum[0] / s.constants->lattice.shepard;
+      double norm = 0;
+      for (int c = 0; c < D; ++c) norm += sum[1 + c] * sum[1 + c];
+      if (colour <= 0 || norm == 0) return;
+      norm = std::sqrt(norm);
+      // n_w points from the liquid into the wall; sum V grad W of the wall points that way.
+      double nw[D], along = 0;
+      for (int c = 0; c < D; ++c) {
+        nw[c] = sum[1 + c] / norm;
+        along += s.normal[c][i] * nw[c];
+      }
+      double tangent[D], length = 0;
+      for (int c = 0; c < D; ++c) {
+        tangent[c] = s.normal[c][i] - along * nw[c];
+        length += tangent[c] * tangent[c];
+      }
+      if (length < 1e-6) return;  // the free surface is parallel to the wall: no triple line here
+      length = std::sqrt(length);
+      const double f = std::clamp(1 - colour / kWallColourFull, 0.0, 1.0);
+      double mixed[D], size = 0;
+      for (int c = 0; c < D; ++c) {
+        mixed[c] = f * s.normal[c][i] + (1 - f) * (sine * tangent[c] / length - cosine * nw[c]);
+        size += mixed[c] * mixed[c];
+      }
+      if (size < 1e-12) return;
+      for (int c = 0; c < D; ++c) turned_[c][k] = mixed[c] / std::sqrt(size);
+    });
+    parallel_for(count, [&](std::ptrdiff_t k) {
+      for (int c = 0; c < D; ++c) s.normal[c][s.moving[k]] = turned_[c][k];
+    });
+  });
+}
+
+}  // namespace meltray::terms
