@@ -218,7 +218,7 @@ class Section:
             # A little larger than the spacing: no background shines through the lattice.
             n = int(mask.sum())
             return axes.add_collection(
-                EllipseCollection(np.full(n, 1.15 * size), np.full(n, 1.15 * size), np.zeros(n), units="xy",
+                EllipseCollection(np.full(n, 1.35 * size), np.full(n, 1.35 * size), np.zeros(n), units="xy",
                                   offsets=np.column_stack((self.x[mask], self.z[mask])),
                                   transOffset=axes.transData, linewidths=0, rasterized=True, **look))
 

@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 
+#include "app/repository.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/run_folder.hpp"
@@ -19,23 +19,13 @@ namespace {
 /// Another python3 may stand first on PATH without h5py and matplotlib.
 constexpr const char* kPython = "/usr/bin/python3";
 
-/// MELTRAY_SCRIPTS, else scripts/ of the repository the program was built in: build/<preset>/meltray.
-fs::path find_script(const char* name) {
-  if (const char* folder = std::getenv("MELTRAY_SCRIPTS")) return fs::path(folder) / name;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path beside = program.parent_path().parent_path().parent_path() / "scripts" / name;
-  if (!error && fs::exists(beside)) return beside;
-  return fs::path(MELTRAY_SOURCE_DIR) / "scripts" / name;
-}
-
 }  // namespace
 
 int plot(const std::vector<fs::path>& run_folders) {
   for (const auto& folder : run_folders)
     if (!observe::is_run_folder(folder))
       throw UsageError(fmt::format("{}: not a run folder of meltray", folder.string()));
-  const fs::path script = find_script("plot_run.py");
+  const fs::path script = repository_folder("scripts", "MELTRAY_SCRIPTS") / "plot_run.py";
   if (!fs::exists(script))
     throw UsageError(
         fmt::format("{}: not found; MELTRAY_SCRIPTS names the folder of the scripts", script.string()));

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 
+#include "app/schedule.hpp"
 #include "app/signals.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
@@ -19,9 +19,6 @@
 namespace meltray::app {
 namespace fs = std::filesystem;
 namespace {
-
-/// Two times closer than this are one: multiples of different intervals differ by rounding only.
-constexpr double kSameTime = 1e-9;
 
 bool same_or_before(double a, double b) {
   return a <= b + kSameTime * std::abs(b);
@@ -75,12 +72,6 @@ void record_failed_start(const observe::RunFolder& folder, const std::string& ca
   r.message = e.what();
   r.threads = threads();
   observe::write_summary(folder.file("summary.json"), r, nullptr);
-}
-
-double next_multiple(double t, double interval) {
-  if (interval <= 0) return 1e300;
-  const double k = std::floor(t / interval * (1 + kSameTime) + kSameTime) + 1;
-  return std::strtod(fmt::format("{:.12g}", k * interval).c_str(), nullptr);
 }
 
 RunLoop::RunLoop(scene::Simulation& simulation, observe::RunFolder& folder, observe::CheckpointSlots& slots,

@@ -36,10 +36,6 @@ void write_case_file(const observe::RunFolder& folder, const scene::Scene& scene
 void record_failed_start(const observe::RunFolder& folder, const std::string& case_name,
                          const std::exception& e);
 
-/// Next multiple of `interval` after t (1e300 for interval 0), rounded to 12 digits so that it is the number
-/// a person would write. Depends on nothing but its arguments: a resumed run stops at the same times.
-double next_multiple(double t, double interval);
-
 /// Advances a simulation to `end`, watched: rows of history.csv, snapshots and checkpoints at exact multiples
 /// of their intervals, progress, signals, and a summary.json whatever happens.
 class RunLoop {

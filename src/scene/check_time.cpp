@@ -58,6 +58,9 @@ void check_time(const Scene& scene, const Document& document) {
   if (o.fixed_step > scene.time.end)
     refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
            fmt::format("at most time.end_s = {} [s]", scene.time.end));
+  if (o.fixed_step > 0 && o.fixed_step < o.min_step)
+    refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
+           fmt::format("at least time.min_step_s = {} [s]", o.min_step));
   if (o.fixed_step > 0) return;
   if (o.min_step >= o.max_step)
     refuse(document.place("time.min_step_s"), "time.min_step_s", fmt::format("{}", o.min_step),

@@ -30,6 +30,8 @@ void parallel_for(std::ptrdiff_t n, F&& f) {
 
 /// Reductions run over fixed blocks that are combined in order: bitwise independent of the number of threads.
 inline constexpr std::ptrdiff_t kReductionBlock = 1024;
+/// A sum over fewer items is cheaper than waking the other threads; the blocks, and so the bits, are the same.
+inline constexpr std::ptrdiff_t kSerialReductionBelow = 8 * kReductionBlock;
 
 /// Reduces block results `block(begin, end)` with `combine(total, part)` in fixed order.
 template <class T, class Block, class Combine>
@@ -39,7 +41,7 @@ T parallel_reduce(std::ptrdiff_t n, T init, Block&& block, Combine&& combine) {
   thread_local std::vector<T> parts;
   parts.assign(static_cast<std::size_t>(blocks), init);
   T* part = parts.data();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (n >= kSerialReductionBelow)
   for (std::ptrdiff_t b = 0; b < blocks; ++b)
     part[b] = block(b * kReductionBlock, std::min(n, (b + 1) * kReductionBlock));
   T total = init;

@@ -117,7 +117,8 @@ struct Time {
   double atol_position = 0.05;          ///< fraction of the spacing
   double atol_velocity = 0.1;           ///< [m/s]
   double atol_temperature = 5;          ///< [K], turned into enthalpy with the solid's heat capacity
-  double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_viscous = 0.125, cfl_thermal = 0.1, cfl_force = 0.25;
+  double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_force = 0.25;
+  double cfl_viscous = 0.8, cfl_thermal = 0.8;   ///< shares of the Gershgorin stability bound of explicit terms
   double beam_travel = 0.25;            ///< of the focal radius per step
   PartitionChoice conduction = PartitionChoice::automatic, viscosity = PartitionChoice::automatic,
                   interface_viscosity = PartitionChoice::automatic, evaporation = PartitionChoice::automatic;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/validate/row.hpp"
+
+namespace meltray::app {
+
+/// What a validation case is run with.
+struct Setting {
+  std::filesystem::path folder;  ///< validation/<id>: case.toml, reference table
+  bool small = false;            ///< the twin that takes seconds: coarser or shorter
+};
+
+struct ValidationCase {
+  const char* id;
+  const char* summary;  ///< what is compared, one line
+  Rows (*run)(const Setting& setting);
+};
+
+/// Every validation case, cheap and basic ones first.
+const std::vector<ValidationCase>& validation_cases();
+
+Rows fresnel_angles(const Setting& setting);
+Rows wedge_absorption(const Setting& setting);
+Rows stefan_two_phase_iron(const Setting& setting);
+Rows taylor_green(const Setting& setting);
+Rows laplace_drop(const Setting& setting);
+Rows recoil_flat_plate(const Setting& setting);
+
+}  // namespace meltray::app

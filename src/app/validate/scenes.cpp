@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "app/validate/scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace meltray::app {
+
+std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides) {
+  return std::make_unique<scene::Simulation>(scene::read_case(setting.folder / "case.toml", overrides));
+}
+
+void advance(scene::Simulation& simulation, double end, const std::function<void()>& watch) {
+  while (simulation.time() < end) {
+    simulation.step(end);
+    if (watch) watch();
+  }
+}
+
+double rms_speed(const Particles& p) {
+  double energy = 0, mass = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.is_liquid(i) || p.is_wall(i) || p.has(i, kRemoved)) continue;
+    for (int c = 0; c < p.dim; ++c) energy += p.mass[i] * p.v[c][i] * p.v[c][i];
+    mass += p.mass[i];
+  }
+  return mass > 0 ? std::sqrt(energy / mass) : 0.0;
+}
+
+std::string resolution_text(double spacing) {
+  if (spacing < 1e-3) return fmt::format("dx {:.4g} um", spacing * 1e6);
+  return fmt::format("dx {:.4g}", spacing);
+}
+
+}  // namespace meltray::app
