@@ -211,33 +211,34 @@ class Section:
             self.liquid = file["phase"][:][slab] == 1
             self.seam = (file["resolidified"][:][slab] == 1) & ~self.liquid
 
-    def draw(self, axes, norm, depth_mm):
+    def draw(self, axes, norm, frame, depth_mm):
         size = 1e3 * self.spacing
 
         def discs(mask, **look):
             # A little larger than the spacing: no background shines through the lattice.
             n = int(mask.sum())
-            return axes.add_collection(
+            if n == 0:  # matplotlib draws an empty collection of this kind as one disc in the corner
+                return
+            axes.add_collection(
                 EllipseCollection(np.full(n, 1.35 * size), np.full(n, 1.35 * size), np.zeros(n), units="xy",
                                   offsets=np.column_stack((self.x[mask], self.z[mask])),
                                   transOffset=axes.transData, linewidths=0, rasterized=True, **look))
 
         discs(~self.liquid & ~self.seam, facecolors=SOLID)
         discs(self.seam, facecolors=SEAM)
-        melt = discs(self.liquid, array=self.temperature[self.liquid], cmap="inferno", norm=norm)
-        solid = self.z[~self.liquid]
-        top = max(np.max(solid, initial=0.0), 0.0) + 6 * size
-        if np.any(self.liquid):
-            # Spatter that is far up would shrink the picture.
-            top = max(top, np.percentile(self.z[self.liquid], 98) + 4 * size)
-        if len(self.x):
-            axes.set_xlim(self.x.min() - size, self.x.max() + size)
-            axes.set_ylim(self.z.min() - size, top)
+        discs(self.liquid, array=self.temperature[self.liquid], cmap="inferno", norm=norm)
+        left, right, bottom, top = frame
+        axes.set_xlim(left, right)
+        axes.set_ylim(bottom, top)
         self.draw_beam(axes, top, -depth_mm)
         axes.set_aspect("equal")
         axes.grid(False)
         axes.set_title(f"t = {1e3 * self.time:.2f} ms", fontsize=9)
-        return melt
+
+    def frame(self):
+        """Left, right, bottom and top of the solid and its seam [mm]; spatter does not count."""
+        x, z = (self.x[~self.liquid], self.z[~self.liquid]) if np.any(~self.liquid) else (self.x, self.z)
+        return np.array([x.min(), x.max(), z.min(), max(z.max(), 0.0)]) if len(x) else None
 
     def draw_beam(self, axes, top, bottom):
         """Envelope at 1/e^2 from the top of the picture down to what the beam sees."""
@@ -269,25 +270,34 @@ def draw_sections(run):
     hot = np.concatenate(melt) if melt else np.array([300.0, 301.0])
     low, high = np.percentile(hot, [1, 99])
     norm = plt.Normalize(low, max(high, low + 1))
+    frames = [f for f in (s.frame() for s in sections) if f is not None]
+    if not frames:
+        return
+    # All pictures show the same part: the workpiece at the first of them and a fifth of its height above.
+    left, right, bottom, top = frames[0]
+    space = max(0.2 * (top - bottom), 4e3 * sections[0].spacing)
+    edge = 1e3 * sections[0].spacing
+    frame = (left - edge, right + edge, bottom - edge, top + space)
 
     def depth_at(t):
         if not len(run.ms):
             return 0.0
         return 1e3 * float(np.interp(t, run.history["time_s"], run.column("axis_depth_m")))
 
-    def label(axes, bottom=True):
+    def label(axes):
         axes.set_ylabel("z [mm]")
-        if bottom:
-            axes.set_xlabel("x [mm]")
+        axes.set_xlabel("x [mm]")
 
-    def colour_bar(figure, collection, axes):
-        figure.colorbar(collection, ax=axes, shrink=0.8).set_label("temperature of the melt [K]")
+    def colour_bar(figure, axes):
+        colours = plt.cm.ScalarMappable(norm=norm, cmap="inferno")
+        figure.colorbar(colours, ax=axes, shrink=0.8).set_label("temperature of the melt [K]")
 
     for old in run.plots.glob("section_*.png"):
         old.unlink()
     for s in sections:
         figure, axes = plt.subplots(figsize=(6, 4.5))
-        colour_bar(figure, s.draw(axes, norm, depth_at(s.time)), axes)
+        s.draw(axes, norm, frame, depth_at(s.time))
+        colour_bar(figure, axes)
         label(axes)
         run.save(figure, f"section_{1e3 * s.time:07.3f}ms.png")
 
@@ -298,9 +308,9 @@ def draw_sections(run):
     for axes in grid.ravel()[len(sections):]:
         axes.set_visible(False)
     for axes, s in zip(grid.ravel(), sections):
-        collection = s.draw(axes, norm, depth_at(s.time))
+        s.draw(axes, norm, frame, depth_at(s.time))
         label(axes)
-    colour_bar(figure, collection, grid)
+    colour_bar(figure, grid)
     figure.suptitle(f"{run.title()}: lengthwise section")
     run.save(figure, "sections.png")
 

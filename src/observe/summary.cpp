@@ -45,11 +45,11 @@ Json energy_json(const scene::EnergyBudget& e) {
 
 /// Relative to the largest momentum or impulse on the list.
 Json momentum_json(const scene::MomentumBudget& m) {
-  const Vec3 impulses = m.gravity + m.surface + m.pressure + m.viscosity + m.phase_change;
+  const Vec3 impulses = m.gravity + m.surface + m.pressure + m.viscosity + m.shifting + m.phase_change;
   const Vec3 gap = m.current - m.initial - impulses + m.ejected;
   double largest = 0;
   for (const Vec3& v :
-       {m.initial, m.current, m.gravity, m.surface, m.pressure, m.viscosity, m.phase_change, m.ejected})
+       {m.initial, m.current, m.gravity, m.surface, m.pressure, m.viscosity, m.shifting, m.phase_change, m.ejected})
     largest = std::max(largest, v.norm());
   return {{"unit", "kg m/s"},
           {"initial", vector(m.initial)},
@@ -58,6 +58,7 @@ Json momentum_json(const scene::MomentumBudget& m) {
           {"surface", vector(m.surface)},
           {"pressure", vector(m.pressure)},
           {"viscosity", vector(m.viscosity)},
+          {"shifting", vector(m.shifting)},
           {"phase_change", vector(m.phase_change)},
           {"ejected", vector(m.ejected)},
           {"relative_error", largest > 0 ? gap.norm() / largest : 0}};

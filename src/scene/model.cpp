@@ -69,21 +69,21 @@ bool Model::has_implicit() const {
          ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
 }
 
-std::size_t Model::powers_begin() const {
+std::size_t Model::crossings_begin() const {
   return (flows() ? 2 * constants_.dim * stage.moving.size() : 0) + stage.heated.size();
 }
 
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const {
   const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
   const int dim = constants_.dim;
-  y.resize(powers_begin() + kPowers);
+  y.resize(crossings_begin() + terms::Crossings::kCount);
   for (int c = 0; c < dim; ++c)
     for (std::size_t k = 0; k < nm; ++k) {
       y[c * nm + k] = patch.x[c][stage.moving[k]];
       y[(dim + c) * nm + k] = patch.v[c][stage.moving[k]];
     }
   for (std::size_t k = 0; k < nh; ++k) y[2 * dim * nm + k] = patch.h[stage.heated[k]];
-  for (std::size_t k = 0; k < kPowers; ++k) y[powers_begin() + k] = 0;
+  std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
 
   const Time& time = scene_.time;
   fields.clear();
@@ -94,7 +94,7 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
   add("position", 0, dim * nm, 0.0, time.atol_position * constants_.spacing);
   add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
   add("enthalpy", 2 * dim * nm, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
-  add("powers", powers_begin(), kPowers, 0.0, 1e100);
+  add("crossings", crossings_begin(), terms::Crossings::kCount, 0.0, 1e100);
 }
 
 void Model::invalidate() {
@@ -103,7 +103,7 @@ void Model::invalidate() {
 }
 
 void Model::evaluate(double t, const double* y) {
-  const std::size_t n = powers_begin(), nm = flows() ? stage.moving.size() : 0;
+  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
   const bool same_x = geometry_valid_ && last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin());
   const bool same_h = last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
@@ -132,37 +132,40 @@ void Model::evaluate(double t, const double* y) {
     parallel_for(stage.size(), [&](Index i) {
       stage.temperature[i] = constants_.material.temperature(patch.h[i]);
     });
-  if (needs_surface() && (!same_x || !same_h || t != 0)) {
+  if (needs_surface() && !same_x) {
     const auto timer = timers_.measure(Part::surface);
-    if (!same_x) {
-      terms::compute_surface(stage);
-      if (scene_.terms.wetting) wetting_.turn_normals(stage);
-    }
-    if (scene_.terms.surface_tension || scene_.terms.recoil) {
-      if (scene_.terms.surface_tension)
-        tension_.pressure(stage, surface_pressure_);
-      else
-        surface_pressure_.assign(stage.size(), 0.0);
-      if (scene_.terms.recoil)
-        parallel_for(stage.size(), [&](Index i) {
-          if (patch.liquid[i] && stage.surface[i] > 0)
-            surface_pressure_[i] += recoil_.pressure(constants_.material, stage.temperature[i], t);
-        });
-      terms::average_surface_pressure(stage, surface_pressure_);
-    }
+    terms::compute_surface(stage);
+    if (scene_.terms.wetting) wetting_.turn_normals(stage);
   }
   geometry_valid_ = true;
   if (!same_x || !same_h) implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
 }
 
-terms::Rates Model::rates_into(double*) {
+/// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure solve needs it.
+void Model::update_surface_pressure() {
+  const Terms& terms = scene_.terms;
+  if (!terms.surface_tension && !terms.recoil) return;
+  const auto timer = timers_.measure(Part::surface);
+  if (terms.surface_tension)
+    tension_.pressure(stage, surface_pressure_);
+  else
+    surface_pressure_.assign(stage.size(), 0.0);
+  if (terms.recoil)
+    parallel_for(stage.size(), [&](Index i) {
+      if (patch.liquid[i] && stage.surface[i] > 0)
+        surface_pressure_[i] += recoil_.pressure(constants_.material, stage.temperature[i], stage.t);
+    });
+  terms::average_surface_pressure(stage, surface_pressure_);
+}
+
+terms::Rates Model::cleared_rates() {
   const Index n = stage.size();
   for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(n, 0.0);
   heating_.assign(n, 0.0);
   return {view(acceleration_), heating_.data()};
 }
 
-void Model::finish_rates(const double* y, double* rate, const terms::Powers& powers, bool transport) {
+void Model::finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport) {
   const std::size_t nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
   for (int c = 0; c < dim; ++c) {
@@ -179,78 +182,91 @@ void Model::finish_rates(const double* y, double* rate, const terms::Powers& pow
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
     dh[k] = heating_[stage.heated[k]];
   });
-  double* const p = rate + powers_begin();
-  p[0] = powers.evaporation;
-  p[1] = powers.radiation;
-  p[2] = powers.boundary;
-  p[3] = powers.laser;
-  p[4] = powers.evaporated_mass;
+  crossings.write(rate + crossings_begin());
 }
 
-void Model::add_forces(terms::Rates& rates, bool implicit_part, bool all) {
-  if (viscous(implicit_part).any() || (all && viscous(!implicit_part).any())) {
-    const auto timer = timers_.measure(Part::viscosity);
-    const auto add = [&](bool part) {
-      if (!viscous(part).any()) return;
-      auto& op = part ? viscous_implicit_ : viscous_explicit_;
-      bool& valid = part ? implicit_viscous_valid_ : explicit_viscous_valid_;
-      if (!valid) op.assemble(stage, viscous(part), interface_);
-      valid = true;
-      op.add_acceleration(stage, view(static_cast<const Patch&>(patch).v), rates.acceleration);
-    };
-    add(implicit_part);
-    if (all) add(!implicit_part);
+/// Sum of m a over the moving particles for the accelerations gathered so far [N].
+Vec3 Model::total_force() const {
+  Vec3 sum = Vec3::Zero();
+  for (int c = 0; c < constants_.dim; ++c)
+    sum[c] = parallel_sum(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      return patch.mass[i] * acceleration_[c][i];
+    });
+  return sum;
+}
+
+void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
+  const auto timer = timers_.measure(Part::viscosity);
+  auto& op = implicit_part ? viscous_implicit_ : viscous_explicit_;
+  bool& valid = implicit_part ? implicit_viscous_valid_ : explicit_viscous_valid_;
+  if (!valid) op.assemble(stage, viscous(implicit_part), interface_);
+  valid = true;
+  op.add_acceleration(stage, view(static_cast<const Patch&>(patch).v), acceleration);
+}
+
+void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
+  if (viscous(implicit_part).any()) {
+    add_viscous(implicit_part, rates.acceleration);
+    crossings.viscosity = total_force();
   }
   if (implicit_part) return;
   const auto timer = timers_.measure(Part::forces);
+  Vec3 before = total_force();
   buoyancy_.add_acceleration(stage, rates.acceleration);
-  if (scene_.terms.marangoni) marangoni_.add_acceleration(stage, rates.acceleration);
+  crossings.gravity = total_force() - before;
+  if (!scene_.terms.marangoni) return;
+  before = total_force();
+  marangoni_.add_acceleration(stage, rates.acceleration);
+  crossings.surface = total_force() - before;
 }
 
-void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Powers& powers) {
+void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
   const auto timer = timers_.measure(Part::heat);
   if (scene_.terms.conduction && partitions.conduction == implicit_part) {
     if (!conduction_valid_) conduction_.assemble(stage);
     conduction_valid_ = true;
-    powers.boundary += conduction_.add_heating(stage, rates.heating);
+    crossings.boundary += conduction_.add_heating(stage, rates.heating);
   }
   if ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses == implicit_part)
-    losses_.add_heating(stage, rates.heating, powers);
+    losses_.add_heating(stage, rates.heating, crossings);
   if (!implicit_part && !laser_power.empty()) {
     parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
       const Index i = stage.heated[k];
       rates.heating[i] += laser_power[i] / patch.mass[i];
     });
-    powers.laser += parallel_sum(static_cast<std::ptrdiff_t>(stage.heated.size()),
+    crossings.laser += parallel_sum(static_cast<std::ptrdiff_t>(stage.heated.size()),
                                  [&](std::ptrdiff_t k) { return laser_power[stage.heated[k]]; });
   }
 }
 
 void Model::explicit_rate(double t, const double* y, double* rate) {
   evaluate(t, y);
-  terms::Rates rates = rates_into(rate);
-  terms::Powers powers;
+  terms::Rates rates = cleared_rates();
+  terms::Crossings crossings;
   if (flows()) {
     const bool in_stage = scene_.flow.projection == Projection::stage;
-    add_forces(rates, false, in_stage);
+    add_forces(rates, false, crossings);
     if (shifting_.coefficient > 0) {
       const auto timer = timers_.measure(Part::forces);
       for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
+      const Vec3 before = total_force();
       shifting_.add_rates(stage, view(transport_), rates.acceleration);
+      crossings.shifting = total_force() - before;
     }
-    if (in_stage) pressure_in_stage(rates);
+    if (in_stage) pressure_in_stage(rates, crossings);
   }
-  add_heat(rates, false, powers);
-  finish_rates(y, rate, powers, true);
+  add_heat(rates, false, crossings);
+  finish_rates(y, rate, crossings, true);
 }
 
 void Model::implicit_rate(double t, const double* y, double* rate) {
   evaluate(t, y);
-  terms::Rates rates = rates_into(rate);
-  terms::Powers powers;
-  if (flows()) add_forces(rates, true, false);
-  add_heat(rates, true, powers);
-  finish_rates(y, rate, powers, false);
+  terms::Rates rates = cleared_rates();
+  terms::Crossings crossings;
+  if (flows()) add_forces(rates, true, crossings);
+  add_heat(rates, true, crossings);
+  finish_rates(y, rate, crossings, false);
 }
 
 bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {

@@ -25,7 +25,7 @@ struct Partitions {
   bool operator==(const Partitions&) const = default;
 };
 
-/// The active terms of a scene as an ODE on the patch: y = [x | v | h | powers] of the particles that move and
+/// The active terms of a scene as an ODE on the patch: y = [x | v | h | crossings] of the particles that move and
 /// those that exchange heat; f_E and f_I are sums over the terms of each partition.
 class Model : public OdeProblem {
  public:
@@ -49,9 +49,8 @@ class Model : public OdeProblem {
   StepLimit stable_step(double t, const double* y) override;
   std::vector<StepLimit> step_limits();
 
-  /// Powers integrated over the last step, from the tail of y [J and kg].
-  static constexpr std::size_t kPowers = 5;
-  std::size_t powers_begin() const;
+  /// Where the crossings stand in y; after a step they hold its integrals [J, kg, N s].
+  std::size_t crossings_begin() const;
   bool flows() const { return scene_.terms.pressure; }
 
   terms::Stage stage;
@@ -66,11 +65,14 @@ class Model : public OdeProblem {
   terms::Projection projection;
 
  private:
-  terms::Rates rates_into(double* rate);
-  void finish_rates(const double* y, double* rate, const terms::Powers& powers, bool transport);
-  void add_forces(terms::Rates& rates, bool implicit_part, bool all);
-  void add_heat(terms::Rates& rates, bool implicit_part, terms::Powers& powers);
-  void pressure_in_stage(terms::Rates& rates);
+  terms::Rates cleared_rates();
+  void update_surface_pressure();
+  void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
+  void add_viscous(bool implicit_part, const MutField& acceleration);
+  void add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
+  Vec3 total_force() const;
+  void add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
+  void pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings);
   void count_solve(const solve::SolveReport& report, double t);
   terms::ViscousChoice viscous(bool implicit_part) const;
   bool needs_surface() const;
@@ -91,7 +93,7 @@ class Model : public OdeProblem {
   terms::Shifting shifting_;
   terms::ProjectionOptions projection_options_;
 
-  Components acceleration_, transport_;     ///< scratch, one entry per patch particle
+  Components acceleration_, transport_, all_forces_;     ///< scratch, one entry per patch particle
   std::vector<double> heating_, surface_pressure_, loss_slope_, source_, other_, start_x_;
   Components solve_b_, solve_x_;
   std::vector<double> solve_h_b_, solve_h_x_;

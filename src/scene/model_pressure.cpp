@@ -19,6 +19,7 @@ void Model::count_solve(const solve::SolveReport& report, double t) {
 
 void Model::project(double t, double dt, const std::vector<double>& y) {
   evaluate(t, y.data());
+  update_surface_pressure();
   const auto timer = timers_.measure(Part::pressure);
   projection.assemble(stage);
   largest_acceleration = 0;
@@ -35,11 +36,8 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
   for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(stage.size(), 0.0);
   projection.add_acceleration(stage, projection_options_.entry, view(acceleration_));
   const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
+  pressure_impulse = dt * total_force();
   for (int c = 0; c < constants_.dim; ++c) {
-    pressure_impulse[c] = dt * parallel_sum(count, [&](std::ptrdiff_t k) {
-                            const Index i = stage.moving[k];
-                            return patch.mass[i] * acceleration_[c][i];
-                          });
     // x^{n+1} = x^n + dt (v^n + v^{n+1})/2 (Cummins & Rudman 1999): x already moved with v*.
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = stage.moving[k];
@@ -56,14 +54,18 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
   invalidate();
 }
 
-void Model::pressure_in_stage(terms::Rates& rates) {
+void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) {
   // Lagrangian particles: D(div v)/Dt = div a + dDiv(v), so that div(grad p/rho) = div f* + dDiv(v) + div v/tau
   // keeps div v = 0 and pulls any error back with the fixed time constant tau.
+  update_surface_pressure();
   const auto timer = timers_.measure(Part::pressure);
   projection.assemble(stage);
   if (projection.rows() == 0) return;
   const auto v = view(static_cast<const Patch&>(patch).v);
-  projection.divergence(stage, view(static_cast<const Components&>(acceleration_)), source_);
+  // f* holds every acceleration of this stage, those of the implicit side included.
+  all_forces_ = acceleration_;
+  if (viscous(true).any()) add_viscous(true, view(all_forces_));
+  projection.divergence(stage, view(static_cast<const Components&>(all_forces_)), source_);
   projection.divergence_rate(stage, v, other_);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r];
   projection.divergence(stage, v, other_);
@@ -72,7 +74,9 @@ void Model::pressure_in_stage(terms::Rates& rates) {
   const double relax = 1 / (drift_time * drift_time * scene_.flow.drift_time_ratio);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] -= relax * other_[r];
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
+  const Vec3 before = total_force();
   projection.add_acceleration(stage, projection_options_.entry, rates.acceleration);
+  crossings.pressure = total_force() - before;
 }
 
 std::vector<StepLimit> Model::step_limits() {

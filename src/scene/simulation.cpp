@@ -191,7 +191,6 @@ StepInfo Simulation::Impl::step(double t_stop) {
     report = integrator.step(model, fields, time, t_stop, y);
   }
   check(report);
-  const double start = time;
   time = report.t;
   last_dt = report.dt;
   if (model.flows() && scene.flow.projection == Projection::step)
@@ -215,7 +214,6 @@ StepInfo Simulation::Impl::step(double t_stop) {
     list_motion += motion;
     if (laser) laser->add_motion(motion);
   }
-  (void)start;
   ++counters.limiter[std::string(report.limiter)];
   return {time, report.dt, std::string(report.limiter)};
 }
@@ -247,21 +245,22 @@ void Simulation::Impl::check(const StepReport& report) {
 }
 
 void Simulation::Impl::book(const StepReport& report) {
-  const double* const p = y.data() + model.powers_begin();
-  energy.evaporation += p[0];
-  energy.radiation += p[1];
-  energy.boundary += p[2];
-  energy.laser += p[3];
-  mass.evaporated_not_removed += p[4];
-  evaporative_loss = p[0] / report.dt;
+  const auto crossed = terms::Crossings::read(y.data() + model.crossings_begin());
+  energy.evaporation += crossed.evaporation;
+  energy.radiation += crossed.radiation;
+  energy.boundary += crossed.boundary;
+  energy.laser += crossed.laser;
+  mass.evaporated_not_removed += crossed.evaporated_mass;
+  evaporative_loss = crossed.evaporation / report.dt;
   if (laser) {
     laser->book(report.dt);
     energy.undeposited += report.dt * laser->undeposited();
   }
-  momentum.pressure += model.pressure_impulse;
-  if (scene.terms.gravity)
-    for (Index i : model.stage.moving)
-      momentum.gravity[constants.dim - 1] -= model.patch.mass[i] * scene.domain.gravity * report.dt;
+  momentum.gravity += crossed.gravity;
+  momentum.surface += crossed.surface;
+  momentum.viscosity += crossed.viscosity;
+  momentum.shifting += crossed.shifting;
+  momentum.pressure += crossed.pressure + model.pressure_impulse;
   ++counters.steps;
   counters.rejected += report.rejected;
   counters.liquid_particle_steps += static_cast<std::int64_t>(model.stage.moving.size());
@@ -445,6 +444,7 @@ void Simulation::archive(Archive& a) {
   for (auto [name, item] : {std::pair{"initial", &s.momentum.initial}, {"gravity", &s.momentum.gravity},
                             {"surface", &s.momentum.surface}, {"pressure", &s.momentum.pressure},
                             {"viscosity", &s.momentum.viscosity}, {"phase_change", &s.momentum.phase_change},
+                            {"shifting", &s.momentum.shifting},
                             {"ejected", &s.momentum.ejected}})
     for (int c = 0; c < 3; ++c) a.value(fmt::format("momentum/{}_{}", name, c), (*item)[c]);
   Counters& k = s.counters;

@@ -21,7 +21,7 @@ double SurfaceLosses::mass_flux_slope(const Material& m, double temperature) con
          (m.saturation_pressure_slope(temperature) - 0.5 * m.saturation_pressure(temperature) / temperature);
 }
 
-void SurfaceLosses::add_heating(const Stage& s, double* heating, Powers& powers) const {
+void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& crossings) const {
   const Material& m = s.constants->material;
   struct Sum {
     double evaporation, radiation, mass;
@@ -54,9 +54,9 @@ void SurfaceLosses::add_heating(const Stage& s, double* heating, Powers& powers)
       [](Sum a, Sum b) {
         return Sum{a.evaporation + b.evaporation, a.radiation + b.radiation, a.mass + b.mass};
       });
-  powers.evaporation += total.evaporation;
-  powers.radiation += total.radiation;
-  powers.evaporated_mass += total.mass;
+  crossings.evaporation += total.evaporation;
+  crossings.radiation += total.radiation;
+  crossings.evaporated_mass += total.mass;
 }
 
 void SurfaceLosses::slope(const Stage& s, double* slope) const {

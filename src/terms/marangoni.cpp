@@ -41,16 +41,4 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
   });
 }
 
-void Buoyancy::add_acceleration(const Stage& s, const MutField& acceleration) const {
-  if (!gravity && !buoyant) return;
-  const Material& m = s.constants->material;
-  double* const az = acceleration[s.constants->dim - 1];
-  parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
-    const Index i = s.moving[k];
-    double down = gravity ? g : 0.0;
-    if (buoyant) down -= g * m.expansion * (s.temperature[i] - m.expansion_reference);
-    az[i] -= down;
-  });
-}
-
 }  // namespace meltray::terms

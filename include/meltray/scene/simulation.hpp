@@ -28,10 +28,13 @@ struct EnergyBudget {
   double relative_error() const;
 };
 
-/// Momentum of liquid particles and the impulses that changed it [kg m/s].
+/// Momentum of liquid particles and the impulses that changed it [kg m/s]:
+/// current - initial = gravity + surface + pressure + viscosity + shifting + phase_change - ejected.
+/// `pressure` holds the surface force of recoil and tension as well, `surface` the Marangoni stress.
 struct MomentumBudget {
   Vec3 initial = Vec3::Zero(), current = Vec3::Zero();
   Vec3 gravity = Vec3::Zero(), surface = Vec3::Zero(), pressure = Vec3::Zero(), viscosity = Vec3::Zero();
+  Vec3 shifting = Vec3::Zero();       ///< of the convective correction of the shifted velocity
   Vec3 phase_change = Vec3::Zero(), ejected = Vec3::Zero();
 };
 

@@ -17,8 +17,8 @@ struct SurfaceLosses {
   /// Mass flux [kg/(m^2 s)] and its derivative with respect to T.
   double mass_flux(const Material& m, double temperature) const;
   double mass_flux_slope(const Material& m, double temperature) const;
-  /// Adds to dh/dt and to the powers (as positive losses).
-  void add_heating(const Stage& stage, double* heating, Powers& powers) const;
+  /// Adds to dh/dt and to the crossings (as positive losses).
+  void add_heating(const Stage& stage, double* heating, Crossings& crossings) const;
   /// d(power)/dT of each particle [W/K], <= 0, written to `slope` (one entry per patch particle).
   void slope(const Stage& stage, double* slope) const;
   /// Largest |d(dh/dt)/dh| [1/s].

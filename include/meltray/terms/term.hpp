@@ -15,11 +15,18 @@ struct Rates {
   double* heating = nullptr;    ///< dh/dt [W/kg]
 };
 
-/// Powers that cross the boundary of the system, integrated as part of the state so that the energy budget
-/// closes with the same Runge-Kutta weights as the enthalpies.
-struct Powers {
+/// What crosses the boundary of the system or changes the melt's momentum, integrated as part of the state so
+/// that the budgets close with the same Runge-Kutta weights as the fields.
+struct Crossings {
   double evaporation = 0, radiation = 0, boundary = 0, laser = 0;  ///< [W]
   double evaporated_mass = 0;                                      ///< [kg/s]
+  /// Force on all moving particles together, by cause [N]; `surface` is the Marangoni stress.
+  Vec3 gravity = Vec3::Zero(), surface = Vec3::Zero(), viscosity = Vec3::Zero(), shifting = Vec3::Zero(),
+       pressure = Vec3::Zero();
+
+  static constexpr std::size_t kCount = 20;
+  void write(double* out) const;
+  static Crossings read(const double* in);
 };
 
 }  // namespace meltray::terms

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""A run that was killed, stopped or run on other threads gives the bits of the undisturbed run.
+
+usage: restart_test.py PROGRAM [unittest options]; MELTRAY_KILLS=20 in the environment for the long variant.
+"""
+import os
+import random
+import signal
+import time
+import unittest
+
+from meltray_runner import CASES, Scratch, main, meltray, run, snapshots, start, summary
+
+WELD = CASES / "tiny_weld.toml"
+KILLS = int(os.environ.get("MELTRAY_KILLS", "5"))
+SEED = int(os.environ.get("MELTRAY_SEED", "1"))
+
+
+def wait_for_write(folder, process, seconds):
+    """Waits until a file is being written (its .part exists) after `seconds`, or the process has ended."""
+    began = time.monotonic()
+    while process.poll() is None:
+        if time.monotonic() - began > seconds and any(
+                entry.name.endswith(".part") for f in (folder, folder / "particles") if f.is_dir()
+                for entry in os.scandir(f)):
+            return True
+    return False
+
+
+class Restart(Scratch):
+    def setUp(self):
+        super().setUp()
+        began = time.monotonic()
+        self.reference = run(WELD, self.folder / "reference", "--threads", "1")
+        self.seconds = time.monotonic() - began
+
+    def finish(self, folder, *options):
+        done = meltray("resume", folder, "--quiet", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_reference_does_what_it_is_for(self):
+        """The scene melts, boils, traces the beam, loses spatter and rejects a step."""
+        result = summary(self.reference)
+        self.assertEqual(result["outcome"], "finished")
+        self.assertGreater(result["particles"]["liquid"], 20)
+        self.assertGreater(result["rejected_steps"], 0)
+        self.assertGreater(result["budgets"]["laser"]["traces"], 40)
+        self.assertGreater(result["budgets"]["energy"]["evaporation_j"], 0)
+        self.assertEqual(len(snapshots(self.reference)), 6)
+
+    def test_two_threads(self):
+        two = run(WELD, self.folder / "two", "--threads", "2")
+        self.assert_same_results(self.reference, two, "1 and 2 threads")
+
+    def test_kill(self):
+        """kill -9 again and again, every second time in the middle of a write; threads change on the way."""
+        chance = random.Random(SEED)
+        kills = writes = chains = 0
+        while kills < KILLS:
+            chains += 1
+            folder = self.folder / f"killed-{chains}"
+            process = start("run", WELD, "--out", folder, "--quiet", "--threads", "1")
+            while kills < KILLS:
+                wait = chance.uniform(0.02, 0.6) * self.seconds
+                if kills % 2:
+                    writing = wait_for_write(folder, process, wait)
+                else:
+                    time.sleep(wait)
+                    writing = False
+                alive = process.poll() is None
+                process.kill()
+                process.wait()
+                if not alive:
+                    self.assertEqual(process.returncode, 0)
+                    break
+                kills, writes = kills + 1, writes + writing
+                process = start("resume", folder, "--quiet", "--threads", str(chance.choice([1, 2])))
+            self.assertEqual(process.wait(), 0)
+            self.assert_same_results(self.reference, folder, f"chain {chains}, seed {SEED}")
+            parts = [p.name for p in folder.rglob("*.part")]
+            self.assertFalse(parts, "half-written files are left over")
+        print(f"{kills} kills in {chains} runs, {writes} of them while a file was written", flush=True)
+
+    def test_signals(self):
+        for number, code, outcome in ((signal.SIGTERM, 143, "terminated"), (signal.SIGINT, 130, "interrupted")):
+            with self.subTest(outcome):
+                folder = self.folder / outcome
+                process = start("run", WELD, "--out", folder, "--quiet", "--threads", "1")
+                time.sleep(0.5 * self.seconds)
+                process.send_signal(number)
+                self.assertEqual(process.wait(), code)
+                result = summary(folder)
+                self.assertEqual((result["outcome"], result["exit_code"]), (outcome, code))
+                self.assertLess(result["time_s"], 2e-4)
+                self.assertEqual(result["checkpoint_time_s"], result["time_s"])
+                self.finish(folder)
+                self.assert_same_results(self.reference, folder, outcome)
+
+    def test_stop_at_a_time_between_two_checkpoints(self):
+        folder = run(WELD, self.folder / "until", "--until", "1.27e-4")
+        self.assertEqual(summary(folder)["outcome"], "stopped")
+        self.assertEqual(summary(folder)["time_s"], 1.27e-4)
+        self.finish(folder)
+        self.assert_same_results(self.reference, folder, "--until")
+
+    def test_finished_run_has_nothing_to_do(self):
+        before = (self.reference / "summary.json").read_bytes()
+        done = meltray("resume", self.reference)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("nothing to do", done.stdout)
+        self.assertEqual((self.reference / "summary.json").read_bytes(), before)
+
+    def test_fork(self):
+        """A fork goes on in a folder of its own with another setting and leaves the first run alone."""
+        before = {f: f.read_bytes() for f in self.reference.rglob("*") if f.is_file()}
+        fork = self.folder / "fork"
+        done = meltray("resume", self.reference, "--until", "2.2e-4", "--set", "laser.power_w=500", "--out", fork)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual({f: f.read_bytes() for f in self.reference.rglob("*") if f.is_file()}, before)
+        self.assertIn("reference", summary(fork)["forked_from"])
+        self.assertEqual(summary(fork)["time_s"], 2.2e-4)
+        laser = [summary(f)["budgets"]["laser"]["in_j"] for f in (self.reference, fork)]
+        self.assertAlmostEqual(laser[1] - laser[0], 500 * 2e-5, delta=1e-9)
+
+
+if __name__ == "__main__":
+    main()
