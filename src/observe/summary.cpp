@@ -38,6 +38,7 @@ Json energy_json(const scene::EnergyBudget& e) {
           {"evaporation_j", e.evaporation},
           {"radiation_j", e.radiation},
           {"ejected_j", e.ejected},
+          {"cropped_j", e.cropped},
           {"clamped_j", e.clamped},
           {"undeposited_j", e.undeposited},
           {"relative_error", e.relative_error()}};
@@ -68,8 +69,9 @@ Json mass_json(const scene::MassBudget& m) {
   return {{"initial_kg", m.initial},
           {"current_kg", m.current},
           {"ejected_kg", m.ejected},
+          {"cropped_kg", m.cropped},
           {"evaporated_not_removed_kg", m.evaporated_not_removed},
-          {"relative_error", m.initial > 0 ? std::abs(m.current + m.ejected - m.initial) / m.initial : 0}};
+          {"relative_error", m.initial > 0 ? std::abs(m.current + m.ejected + m.cropped - m.initial) / m.initial : 0}};
 }
 
 Json laser_json(const scene::LaserBudget& l) {

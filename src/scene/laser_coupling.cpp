@@ -85,10 +85,21 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   budget_.worst = std::max(budget_.worst, error / ledger_.in);
   ++budget_.traces;
   budget_.dropped_rays += ledger_.dropped_rays;
+  // Thousands of hits lie side by side: look around each half-spacing voxel only once.
+  const double voxel = 0.5 * constants_.spacing, radius = kDepositRadius * constants_.spacing + voxel;
+  std::vector<std::array<int, 3>> voxels;
+  voxels.reserve(hits_.size());
+  for (const laser::Hit& hit : hits_) {
+    std::array<int, 3> key;
+    for (int c = 0; c < 3; ++c) key[c] = static_cast<int>(std::floor(hit.position[c] / voxel));
+    voxels.push_back(key);
+  }
+  std::sort(voxels.begin(), voxels.end());
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
   std::vector<Index> near;
-  const double radius = (kDepositRadius + 0.5) * constants_.spacing;
-  for (const laser::Hit& hit : hits_)
-    selector.for_resting_near(particles, hit.position, radius, [&](Index i) { near.push_back(i); });
+  for (const auto& key : voxels)
+    selector.for_resting_near(particles, voxel * Vec3(key[0] + 0.5, key[1] + 0.5, key[2] + 0.5), radius,
+                              [&](Index i) { near.push_back(i); });
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   lit_ = std::move(near);

@@ -128,10 +128,14 @@ void Model::evaluate(double t, const double* y) {
     const auto timer = timers_.measure(Part::neighbours);
     pairs.refresh(patch, constants_.kernel);
   }
-  if (!same_h || !same_x)
-    parallel_for(stage.size(), [&](Index i) {
-      stage.temperature[i] = constants_.material.temperature(patch.h[i]);
-    });
+  const auto update_temperature = [&](Index i) {
+    stage.temperature[i] = constants_.material.temperature(patch.h[i]);
+  };
+  if (!geometry_valid_)
+    parallel_for(stage.size(), update_temperature);
+  else if (!same_h)
+    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
+                 [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
   if (needs_surface() && !same_x) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);

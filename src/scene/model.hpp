@@ -39,6 +39,8 @@ class Model : public OdeProblem {
   void invalidate();
   /// One projection over a step that has just been taken: Eq. (6) at the patch's positions; corrects v and x.
   void project(double t, double dt, const std::vector<double>& y);
+  /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06 m/s^2, ...".
+  std::string blame(Index i, double dt);
   /// Chooses the partition of "auto" terms from their stiffness against the step expected next.
   void choose_partitions(double dt);
 

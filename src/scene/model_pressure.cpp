@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "meltray/core/errors.hpp"
@@ -77,6 +78,39 @@ void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) 
   const Vec3 before = total_force();
   projection.add_acceleration(stage, projection_options_.entry, rates.acceleration);
   crossings.pressure = total_force() - before;
+}
+
+std::string Model::blame(Index i, double dt) {
+  std::vector<std::pair<double, std::string>> pulls;
+  const auto pull = [&](const char* name, auto&& add) {
+    terms::Rates rates = cleared_rates();
+    add(rates.acceleration);
+    double a2 = 0;
+    for (int c = 0; c < constants_.dim; ++c) a2 += acceleration_[c][i] * acceleration_[c][i];
+    pulls.emplace_back(std::sqrt(a2), name);
+  };
+  if (viscous(false).any()) pull("explicit viscosity", [&](auto& a) { add_viscous(false, a); });
+  if (viscous(true).any()) pull("implicit viscosity", [&](auto& a) { add_viscous(true, a); });
+  pull("gravity and buoyancy", [&](auto& a) { buoyancy_.add_acceleration(stage, a); });
+  if (scene_.terms.marangoni) pull("marangoni", [&](auto& a) { marangoni_.add_acceleration(stage, a); });
+  if (shifting_.coefficient > 0)
+    pull("shifting", [&](auto& a) {
+      for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
+      shifting_.add_rates(stage, view(transport_), a);
+    });
+  update_surface_pressure();
+  projection.assemble(stage);
+  if (projection.rows() > 0) {
+    projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
+    for (double& s : source_) s /= dt;
+    projection.solve(stage, source_, projection_options_);
+    pull("pressure and surface force",
+         [&](auto& a) { projection.add_acceleration(stage, projection_options_.entry, a); });
+  }
+  std::sort(pulls.rbegin(), pulls.rend());
+  std::string text = "accelerations in the last accepted state: ";
+  for (const auto& [a, name] : pulls) text += fmt::format("{} {:.3g} m/s^2{}", name, a, &name == &pulls.back().second ? "" : ", ");
+  return text;
 }
 
 std::vector<StepLimit> Model::step_limits() {

@@ -17,8 +17,10 @@ namespace meltray::scene {
 
 namespace {
 
-/// Share of the spacing by which lists reach beyond the support.
-constexpr double kSkin = 0.25;
+/// Share of the spacing by which lists reach beyond the support: where lists are kept while particles move, and
+/// where they are built anew for every step (only what enters the edge of the support during a step is missed).
+constexpr double kSkin = 0.25, kSkinOfStep = 0.05;
+double skin(const Scene& scene) { return scene.heat.bulk_interval > 0 ? kSkinOfStep : kSkin; }
 /// Bulk conduction looks for newly warm particles every so many exchanges.
 constexpr int kExchangesPerBuild = 5;
 /// Faster than this a particle is a numerical failure [m/s].
@@ -30,9 +32,9 @@ constexpr std::int64_t kPartitionSteps = 10;
 
 double EnergyBudget::relative_error() const {
   const double change = stored - initial;
-  const double supplied = laser + boundary - evaporation - radiation - ejected - clamped;
+  const double supplied = laser + boundary - evaporation - radiation - ejected - cropped - clamped;
   double largest = std::abs(change);
-  for (double item : {laser, boundary, evaporation, radiation, ejected, clamped})
+  for (double item : {laser, boundary, evaporation, radiation, ejected, cropped, clamped})
     largest = std::max(largest, std::abs(item));
   return largest > 0 ? std::abs(change - supplied) / largest : 0.0;
 }
@@ -42,7 +44,7 @@ struct Simulation::Impl {
       : scene(std::move(s)),
         constants(build_constants(scene)),
         particles(build_particles(scene, constants)),
-        selector(build_grid(scene, constants, kSkin * constants.spacing), particles),
+        selector(build_grid(scene, constants, skin(scene) * constants.spacing), particles),
         model(scene, constants, timers),
         integrator(scene.time.integrator) {
     model.counters = &counters;
@@ -62,7 +64,7 @@ struct Simulation::Impl {
   void check(const StepReport& report);
   void book(const StepReport& report);
   void change_phases(double dt);
-  void remove_ejected();
+  void remove_escaped();
   void exchange_bulk(double until);
   double stored_energy() const;
   Vec3 liquid_momentum() const;
@@ -120,7 +122,7 @@ Vec3 Simulation::Impl::liquid_momentum() const {
 void Simulation::Impl::select() {
   const auto timer = timers.measure(Part::neighbours);
   const bool everything = scene.heat.bulk_interval <= 0;
-  if (lists_valid && everything && list_motion < 0.5 * kSkin * constants.spacing) {
+  if (lists_valid && everything && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     reload(particles, model.patch);
   } else {
@@ -139,7 +141,7 @@ void Simulation::Impl::select() {
       for (Index i = 0; i < n; ++i) extra[i] = (in_state[model.patch.global[i]] & 2) != 0;
       for (Index i : laser->lit()) in_state[i] &= 1;
     }
-    model.pairs.build(model.patch, selector.grid(), kSkin * constants.spacing, extra);
+    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, extra);
     ++counters.list_builds;
     lists_valid = true;
     list_motion = 0;
@@ -190,18 +192,18 @@ StepInfo Simulation::Impl::step(double t_stop) {
     const auto timer = timers.measure(Part::integrator);
     report = integrator.step(model, fields, time, t_stop, y);
   }
+  if (model.flows() && scene.flow.projection == Projection::step)
+    model.project(report.t, report.dt, y);
+  else
+    model.evaluate(report.t, y.data());
   check(report);
   time = report.t;
   last_dt = report.dt;
-  if (model.flows() && scene.flow.projection == Projection::step)
-    model.project(time, report.dt, y);
-  else
-    model.evaluate(time, y.data());
   book(report);
   write_back(model.patch, particles);
   finish_patch();
   change_phases(report.dt);
-  if (model.flows()) remove_ejected();
+  if (model.flows()) remove_escaped();
   if (scene.heat.bulk_interval > 0 && scene.terms.conduction) exchange_bulk(time);
   if (model.flows() && !model.stage.moving.empty()) {
     const double motion = report.dt * parallel_max(static_cast<std::ptrdiff_t>(model.stage.moving.size()), 0.0,
@@ -218,30 +220,43 @@ StepInfo Simulation::Impl::step(double t_stop) {
   return {time, report.dt, std::string(report.limiter)};
 }
 
-/// Stops at the first particle that is not finite or runs away; names it and what acted on it.
+/// Stops at the first particle of the patch that is not finite or runs away, before anything reaches the store.
+/// Names the particle, its surroundings, and the term that pulled hardest at it in the last accepted state.
 void Simulation::Impl::check(const StepReport& report) {
-  const std::size_t nm = model.flows() ? model.stage.moving.size() : 0;
+  const Patch& p = model.patch;
   const int dim = constants.dim;
-  for (std::size_t k = 0; k < nm; ++k) {
-    double v2 = 0;
-    bool finite = true;
+  const auto bad = [&](Index i) {
+    double v2 = 0, x2 = 0;
     for (int c = 0; c < dim; ++c) {
-      finite = finite && std::isfinite(y[c * nm + k]);
-      v2 += y[(dim + c) * nm + k] * y[(dim + c) * nm + k];
+      v2 += p.v[c][i] * p.v[c][i];
+      x2 += p.x[c][i] * p.x[c][i];
     }
-    if (finite && v2 < kRunaway * kRunaway) continue;
-    const Index i = model.stage.moving[k];
-    throw NumericalFailure(fmt::format(
-        "particle {} is not finite or runs away at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, {:.6g}) m, "
-        "speed {:.4g} m/s, temperature {:.4g} K, {} neighbours, surface pressure {:.4g} Pa, pressure {:.4g} Pa",
-        model.patch.global[i], report.t, report.dt, y[k], y[nm + k], dim == 3 ? y[2 * nm + k] : 0.0, std::sqrt(v2),
-        model.stage.temperature[i], model.pairs.end(i) - model.pairs.begin(i), model.stage.surface_pressure[i],
-        model.patch.pressure[i]));
-  }
-  for (std::size_t k = 0; k < model.stage.heated.size(); ++k)
-    if (!std::isfinite(y[2 * dim * nm + k]))
-      throw NumericalFailure(fmt::format("particle {} has no finite enthalpy at t = {:.9g} s (step {:.3g} s)",
-                                         model.patch.global[model.stage.heated[k]], report.t, report.dt));
+    return !(v2 < kRunaway * kRunaway) || !std::isfinite(x2) || !std::isfinite(p.h[i]);
+  };
+  Index first = -1;
+  for (Index i : model.flows() ? model.stage.moving : model.stage.heated)
+    if (bad(i)) {
+      first = i;
+      break;
+    }
+  for (Index i : model.stage.heated)
+    if (first < 0 && !std::isfinite(p.h[i])) first = i;
+  if (first < 0) return;
+  std::string text = fmt::format(
+      "particle {} is not finite or runs away at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, {:.6g}) m, "
+      "velocity ({:.4g}, {:.4g}, {:.4g}) m/s, enthalpy {:.5g} J/kg, {} neighbours, pressure {:.4g} Pa, surface "
+      "pressure {:.4g} Pa",
+      p.global[first], report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
+      p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first],
+      model.pairs.end(first) - model.pairs.begin(first), p.pressure[first], model.stage.surface_pressure[first]);
+  const Index particle = p.global[first];
+  lists_valid = false;
+  select();
+  model.pack(y, fields);
+  model.evaluate(time, y.data());
+  for (Index i : model.stage.moving)
+    if (model.patch.global[i] == particle) text += "; " + model.blame(i, report.dt);
+  throw NumericalFailure(text);
 }
 
 void Simulation::Impl::book(const StepReport& report) {
@@ -298,7 +313,7 @@ void Simulation::Impl::change_phases(double) {
     } else if (model.patch.liquid[i] && h <= solidus) {
       bool touches = !model.flows();
       sph::with_dim(constants.dim, [&](auto d) {
-        model.pairs.for_row<d>(i, [&](Index, const sph::Pair<d>& p) {
+        model.pairs.for_row<d>(i, [&](const sph::Pair<d>& p) {
           touches = touches || (!model.patch.liquid[p.j] && p.r2() < contact2);
         });
       });
@@ -315,25 +330,31 @@ void Simulation::Impl::change_phases(double) {
   }
 }
 
-/// Liquid that leaves the box through a free face is ejected; periodic directions wrap around.
-void Simulation::Impl::remove_ejected() {
+/// Liquid that leaves the box through a free face is ejected; through a wall it is a loss of the cropping and
+/// counts as removed. Periodic directions wrap around.
+void Simulation::Impl::remove_escaped() {
   for (Index i : model.stage.moving) {
     const Index g = model.patch.global[i];
-    bool outside = false;
+    bool outside = false, through_wall = false;
     for (int c = 0; c < constants.dim; ++c) {
       double& x = particles.x[c][g];
       const double period = selector.grid().period()[c];
-      if (period > 0)
+      if (period > 0) {
         x -= period * std::floor((x - scene.domain.min[c]) / period);
-      else
-        outside = outside || x < scene.domain.min[c] || x > scene.domain.max[c];
+        continue;
+      }
+      const bool below = x < scene.domain.min[c], above = x > scene.domain.max[c];
+      if (!below && !above) continue;
+      const int face = 2 * (constants.dim == 2 && c == 1 ? 2 : c) + (above ? 1 : 0);
+      outside = true;
+      through_wall = through_wall || scene.domain.faces[face].kind == FaceKind::wall;
     }
     if (!outside) continue;
     particles.flags[g] |= kRemoved;
-    energy.ejected += particles.mass[g] * particles.h[g];
-    mass.ejected += particles.mass[g];
+    (through_wall ? energy.cropped : energy.ejected) += particles.mass[g] * particles.h[g];
+    (through_wall ? mass.cropped : mass.ejected) += particles.mass[g];
+    ++(through_wall ? counters.removed : counters.ejected);
     for (int c = 0; c < constants.dim; ++c) momentum.ejected[c] += particles.mass[g] * particles.v[c][g];
-    ++counters.ejected;
     lists_valid = false;
   }
 }
@@ -436,9 +457,11 @@ void Simulation::archive(Archive& a) {
   for (auto [name, item] : {std::pair{"initial", &s.energy.initial}, {"laser", &s.energy.laser},
                             {"boundary", &s.energy.boundary}, {"evaporation", &s.energy.evaporation},
                             {"radiation", &s.energy.radiation}, {"ejected", &s.energy.ejected},
+                            {"cropped", &s.energy.cropped},
                             {"clamped", &s.energy.clamped}, {"undeposited", &s.energy.undeposited}})
     a.value(std::string("energy/") + name, *item);
   for (auto [name, item] : {std::pair{"initial", &s.mass.initial}, {"ejected", &s.mass.ejected},
+                            {"cropped", &s.mass.cropped},
                             {"evaporated", &s.mass.evaporated_not_removed}})
     a.value(std::string("mass/") + name, *item);
   for (auto [name, item] : {std::pair{"initial", &s.momentum.initial}, {"gravity", &s.momentum.gravity},

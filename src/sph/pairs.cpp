@@ -108,6 +108,7 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin, cons
   }
   if (more) search(patch, grid, skin, wanted_);
 
+  next_to_wall_.assign(n, 0);
   start_.assign(n + 1, 0);
   for (const Block& b : blocks_)
     for (std::size_t r = 0; r < b.row.size(); ++r) start_[b.row[r] + 1] = b.count[r];
@@ -122,7 +123,11 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin, cons
     const Block& block = blocks_[b];
     std::size_t k = 0;
     for (std::size_t r = 0; r < block.row.size(); ++r) {
-      std::copy_n(block.entries.begin() + k, block.count[r], j_.begin() + start_[block.row[r]]);
+      const Index row = block.row[r];
+      std::copy_n(block.entries.begin() + k, block.count[r], j_.begin() + start_[row]);
+      std::uint8_t wall = 0;
+      for (Index e = 0; e < block.count[r]; ++e) wall |= patch.wall[block.entries[k + e]];
+      next_to_wall_[row] = wall != 0;
       k += block.count[r];
     }
   }

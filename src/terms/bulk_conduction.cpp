@@ -37,9 +37,9 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
     constexpr int D = d;
     parallel_for(n, [&](Index i) {
       const double vi = patch_.mass[i] / constants.density, li = material.conductivity(patch_.h[i]);
-      pairs_.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
+      pairs_.for_row<D>(i, [&](const sph::Pair<D>& p) {
         if (patch_.wall[p.j] || !(awake_[i] || awake_[p.j])) return;
-        k_[q] = conduction_coefficient(vi, patch_.mass[p.j] / constants.density, li,
+        k_[p.k] = conduction_coefficient(vi, patch_.mass[p.j] / constants.density, li,
                                        material.conductivity(patch_.h[p.j]), scale * p.f);
       });
     });

@@ -25,19 +25,26 @@ void ConductionOperator::assemble(const Stage& s) {
     const double* const lambda = conductivity_.data();
     parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t row) {
       const Index i = s.heated[row];
-      double slope = 0, power = 0;
-      pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-        k_[q] = conduction_coefficient(volume[i], volume[p.j], lambda[i], lambda[p.j], scale * p.f);
-        if (!s.patch->wall[p.j]) return;
-        const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
-        if (!face.isothermal) return;
-        const double di = std::max(std::abs(s.patch->x[face.axis][i] - face.plane), half);
-        const double dj = std::abs(s.patch->x[face.axis][p.j] - face.plane);
-        const double k = conduction_coefficient(volume[i], volume[p.j], lambda[i], lambda[i], scale * p.f) *
-                         (1 + dj / di);
-        slope += k;
-        power += k * (s.temperature[i] - face.temperature);
+      const double vi = 4 * scale * volume[i], li = lambda[i];
+      double* const k = k_.data();
+      // A partner outside the state has conductivity 0 here, so that the pair exchanges nothing.
+      pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
+        const double lj = lambda[p.j];
+        k[p.k] = vi * volume[p.j] * li * lj / (li + lj) * p.f;
       });
+      double slope = 0, power = 0;
+      if (s.constants->any_isothermal && pairs.next_to_wall()[i])
+        pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
+          if (!s.patch->wall[p.j]) return;
+          const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
+          if (!face.isothermal) return;
+          const double di = std::max(std::abs(s.patch->x[face.axis][i] - face.plane), half);
+          const double dj = std::abs(s.patch->x[face.axis][p.j] - face.plane);
+          const double k_wall =
+              conduction_coefficient(volume[i], volume[p.j], li, li, scale * p.f) * (1 + dj / di);
+          slope += k_wall;
+          power += k_wall * (s.temperature[i] - face.temperature);
+        });
       // A prescribed flux enters the layer of particles next to the face.
       for (const WallFace& face : s.constants->faces)
         if (face.flux != 0 && std::abs(s.patch->x[face.axis][i] - face.plane) < s.constants->spacing)
@@ -51,19 +58,16 @@ void ConductionOperator::assemble(const Stage& s) {
 double ConductionOperator::add_heating(const Stage& s, double* heating) const {
   const auto count = static_cast<std::ptrdiff_t>(s.heated.size());
   const double* const temperature = s.temperature.data();
-  sph::with_dim(s.constants->dim, [&](auto d) {
-    constexpr int D = d;
-    const double* const k = k_.data();
-    parallel_for(count, [&](std::ptrdiff_t row) {
-      const Index i = s.heated[row];
-      const double ti = temperature[i];
-      double sum = 0;
-      const Index last = s.pairs->end(i);
+  const double* const k = k_.data();
+  const Index* const neighbour = s.pairs->neighbours();
+  parallel_for(count, [&](std::ptrdiff_t row) {
+    const Index i = s.heated[row];
+    const double ti = temperature[i];
+    double sum = 0;
+    const Index last = s.pairs->end(i);
 #pragma omp simd reduction(+ : sum)
-      for (Index q = s.pairs->begin(i); q < last; ++q) sum += k[q] * (ti - temperature[s.pairs->neighbour(q)]);
-      heating[i] += (sum + wall_power_[i]) / s.patch->mass[i];
-    });
-    (void)D;
+    for (Index q = s.pairs->begin(i); q < last; ++q) sum += k[q] * (ti - temperature[neighbour[q]]);
+    heating[i] += (sum + wall_power_[i]) / s.patch->mass[i];
   });
   return parallel_sum(count, [&](std::ptrdiff_t row) { return wall_power_[s.heated[row]]; });
 }
@@ -99,14 +103,17 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
     r_[i] = mass[i] * b[i];
     p_[i] = inverse_diagonal_[i] * r_[i];
   });
-  const auto apply = [&](const std::vector<double>& in, std::vector<double>& out) {
+  const double* const k = k_.data();
+  const Index* const neighbour = pairs.neighbours();
+  const auto apply = [&](const std::vector<double>& values, std::vector<double>& out) {
+    const double* const in = values.data();
     parallel_for(count, [&](std::ptrdiff_t row) {
       const Index i = s.heated[row];
       const double ti = in[i];
       double sum = 0;
       const Index last = pairs.end(i);
 #pragma omp simd reduction(+ : sum)
-      for (Index q = pairs.begin(i); q < last; ++q) sum += k_[q] * (ti - in[pairs.neighbour(q)]);
+      for (Index q = pairs.begin(i); q < last; ++q) sum += k[q] * (ti - in[neighbour[q]]);
       out[i] = capacity_[i] * ti - gamma * sum;
     });
   };

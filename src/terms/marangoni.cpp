@@ -18,7 +18,7 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
       if (slope == 0) return;
       Matrix moment = Matrix::Zero();
       Vector gradient = Vector::Zero();
-      s.pairs->for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
         const double vf = s.volume[p.j] * p.f;
         for (int a = 0; a < D; ++a) {
           gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];

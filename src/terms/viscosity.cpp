@@ -17,7 +17,6 @@ double alpha_of(const Stage& s, Index i, const InterfaceViscosityParameters& p, 
 
 /// Factor on v_i - v_wall that makes the velocity profile vanish at the wall plane (Morris et al. 1997); the
 /// distance of the particle is kept above half a spacing.
-template <int D>
 double no_slip_factor(const Stage& s, Index i, Index j) {
   const WallFace& face = s.constants->faces[s.patch->wall[j] - 1];
   const double di = std::max(std::abs(s.patch->x[face.axis][i] - face.plane), 0.5 * s.constants->spacing);
@@ -45,51 +44,83 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice, const Inter
       alpha_[i] = alpha_of(s, i, interface, std::sqrt(g));
     });
   }
-  const double scale = 1 / s.constants->lattice.second_moment;
-  const bool no_slip = s.constants->any_no_slip;
+  const double scale = 2 / s.constants->lattice.second_moment;
+  const double strength = 0.5 * rho * h * interface.reference_speed, softening = 0.01 * h * h;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      const double vi = s.volume[i];
-      pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-        const double vv = vi * s.volume[p.j];
-        if (choice_.physical) {
-          // A solid or wall neighbour has the viscosity of the melt beside it.
-          const double mu_j = s.patch->liquid[p.j] ? mu_[p.j] : mu_[i];
-          double c = 2 * vv * scale * p.f * (2 * mu_[i] * mu_j / (mu_[i] + mu_j));
-          if (s.patch->wall[p.j]) {
+    const double* const volume = s.volume.data();
+    const double *const mu = mu_.data(), *const alpha = alpha_.data();
+    const std::uint8_t* const liquid = s.patch->liquid.data();
+    double *const c = c_.data(), *const dd = d_.data();
+    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t row) {
+      const Index i = s.moving[row];
+      const double vi = volume[i];
+      if (choice_.physical) {
+        const double mu_i = mu[i];
+        // A solid or wall neighbour has the viscosity of the melt beside it.
+        pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
+          const double mu_j = liquid[p.j] ? mu[p.j] : mu_i;
+          c[p.k] = scale * vi * volume[p.j] * p.f * (2 * mu_i * mu_j / (mu_i + mu_j));
+        });
+        if (pairs.next_to_wall()[i])
+          pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
+            if (!s.patch->wall[p.j]) return;
             const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
-            c *= face.no_slip ? (no_slip ? no_slip_factor<D>(s, i, p.j) : 1.0) : 0.0;
-          }
-          c_[q] = c;
-        }
-        if (choice_.interface)
-          d_[q] = 0.5 * (alpha_[i] + alpha_[p.j]) * vv * rho * h * interface.reference_speed * p.f /
-                  (p.r2() + 0.01 * h * h);
-      });
+            c[p.k] *= face.no_slip ? no_slip_factor(s, i, p.j) : 0.0;
+          });
+      }
+      if (choice_.interface) {
+        const double alpha_i = alpha[i], vs = vi * strength;
+        pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
+          dd[p.k] = (alpha_i + alpha[p.j]) * vs * volume[p.j] * p.f / (p.r2() + softening);
+        });
+      }
     });
   });
 }
 
+/// sum_j c_ij u_ij + d_ij (u_ij.x_ij) x_ij of one row for a velocity-like field u.
+template <int D, bool Physical, bool Interface>
+std::array<double, D> ViscousOperator::row(const Stage& s, Index i, const ConstField& u) const {
+  const double *const cc = c_.data(), *const dd = d_.data();
+  double ui[D];
+  for (int c = 0; c < D; ++c) ui[c] = u[c][i];
+  return s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
+    double du[D], along = 0;
+    for (int c = 0; c < D; ++c) {
+      du[c] = ui[c] - u[c][p.j];
+      along += du[c] * p.x[c];
+    }
+    const double iso = Physical ? cc[p.k] : 0.0, axial = Interface ? dd[p.k] * along : 0.0;
+    std::array<double, D> out;
+    for (int c = 0; c < D; ++c) out[c] = iso * du[c] + axial * p.x[c];
+    return out;
+  });
+}
+
+/// Calls f(i, row sum) for every moving particle, with the loop compiled for the active parts.
+template <int D, class F>
+void ViscousOperator::for_rows(const Stage& s, const ConstField& u, F&& f) const {
+  const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
+  const auto run = [&](auto physical, auto interface) {
+    parallel_for(count, [&](std::ptrdiff_t k) {
+      const Index i = s.moving[k];
+      f(i, row<D, physical, interface>(s, i, u));
+    });
+  };
+  if (choice_.physical && choice_.interface)
+    run(std::true_type{}, std::true_type{});
+  else if (choice_.physical)
+    run(std::true_type{}, std::false_type{});
+  else
+    run(std::false_type{}, std::true_type{});
+}
+
 void ViscousOperator::add_acceleration(const Stage& s, const ConstField& v, const MutField& acceleration) const {
-  const auto& pairs = *s.pairs;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      double f[D] = {}, vi[D];
-      for (int c = 0; c < D; ++c) vi[c] = v[c][i];
-      pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-        double dv[D], dot = 0;
-        for (int c = 0; c < D; ++c) {
-          dv[c] = vi[c] - v[c][p.j];
-          dot += dv[c] * p.x[c];
-        }
-        const double cc = choice_.physical ? c_[q] : 0, dd = choice_.interface ? d_[q] * dot : 0;
-        for (int c = 0; c < D; ++c) f[c] += cc * dv[c] + dd * p.x[c];
-      });
-      for (int c = 0; c < D; ++c) acceleration[c][i] += f[c] / s.patch->mass[i];
+    for_rows<D>(s, v, [&](Index i, const std::array<double, D>& force) {
+      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / s.patch->mass[i];
     });
   });
 }
@@ -101,10 +132,10 @@ double ViscousOperator::rate(const Stage& s) const {
     return parallel_max(static_cast<std::ptrdiff_t>(s.moving.size()), 0.0, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       double sum = 0;
-      pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-        if (choice_.physical) sum -= c_[q];
+      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
+        if (choice_.physical) sum -= c_[p.k];
         // The projected part acts on one of D directions; its trace bounds the row.
-        if (choice_.interface) sum -= d_[q] * p.r2();
+        if (choice_.interface) sum -= d_[p.k] * p.r2();
       });
       return sum / s.patch->mass[i];
     });
@@ -128,19 +159,8 @@ int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, co
     constexpr int D = d;
     const double* const mass = s.patch->mass.data();
     const auto apply = [&](const Components& in, Components& out) {
-      parallel_for(count, [&](std::ptrdiff_t k) {
-        const Index i = s.moving[k];
-        double f[D] = {};
-        pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-          double dv[D], dot = 0;
-          for (int c = 0; c < D; ++c) {
-            dv[c] = in[c][i] - in[c][p.j];
-            dot += dv[c] * p.x[c];
-          }
-          const double cc = choice_.physical ? c_[q] : 0, dd = choice_.interface ? d_[q] * dot : 0;
-          for (int c = 0; c < D; ++c) f[c] += cc * dv[c] + dd * p.x[c];
-        });
-        for (int c = 0; c < D; ++c) out[c][i] = mass[i] * in[c][i] - gamma * f[c];
+      for_rows<D>(s, view(in), [&](Index i, const std::array<double, D>& force) {
+        for (int c = 0; c < D; ++c) out[c][i] = mass[i] * in[c][i] - gamma * force[c];
       });
     };
     const auto dot = [&](const Components& a, const Components& bb, const double* weight) {
@@ -154,9 +174,9 @@ int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, co
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       double diagonal = 0;
-      pairs.for_row<D>(i, [&](Index q, const sph::Pair<D>& p) {
-        if (choice_.physical) diagonal -= c_[q];
-        if (choice_.interface) diagonal -= d_[q] * p.r2() / D;
+      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
+        if (choice_.physical) diagonal -= c_[p.k];
+        if (choice_.interface) diagonal -= d_[p.k] * p.r2() / D;
       });
       inverse_diagonal_[i] = 1 / (mass[i] + gamma * diagonal);
       for (int c = 0; c < D; ++c) p_[c][i] = x[c][i];

@@ -16,13 +16,15 @@
 namespace meltray::scene {
 
 /// Energy since t = 0 [J], each item accumulated where it happens. Closes when
-/// stored - initial = laser + boundary - evaporation - radiation - ejected - clamped (relative to the largest).
+/// stored - initial = laser + boundary - evaporation - radiation - ejected - cropped - clamped (relative to the
+/// largest).
 struct EnergyBudget {
   double initial = 0, stored = 0;      ///< enthalpy of all particles still in the scene
   double laser = 0;                    ///< absorbed by particles
   double boundary = 0;                 ///< through faces with temperature or flux
   double evaporation = 0, radiation = 0;
-  double ejected = 0;                  ///< enthalpy of particles that left the scene
+  double ejected = 0;                  ///< enthalpy of particles that left through a free face
+  double cropped = 0;                  ///< the same through a wall, where the workpiece was cropped
   double clamped = 0;                  ///< taken away by limits on single particles (never silent)
   double undeposited = 0;              ///< laser power that found no particle (counted, not part of `laser`)
   double relative_error() const;
@@ -39,7 +41,7 @@ struct MomentumBudget {
 };
 
 struct MassBudget {
-  double initial = 0, current = 0, ejected = 0;
+  double initial = 0, current = 0, ejected = 0, cropped = 0;
   double evaporated_not_removed = 0;   ///< what evaporation would have taken: reported, not removed
 };
 

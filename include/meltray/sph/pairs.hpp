@@ -21,9 +21,10 @@ decltype(auto) with_dim(int dim, F&& f) {
 }
 
 /// Neighbour j of particle i with the geometry of the current stage: x_ij = x_i - x_j, W_ij, F_ij = W'/r.
+/// k is the position of the pair in the list, for coefficients that are stored per pair.
 template <int D>
 struct Pair {
-  Index j;
+  Index j, k;
   std::array<double, D> x;
   double w, f;
   double r2() const {
@@ -47,8 +48,11 @@ class PairList {
   Index begin(Index i) const { return start_[i]; }
   Index end(Index i) const { return start_[i + 1]; }
   Index neighbour(Index k) const { return j_[k]; }
+  const Index* neighbours() const { return j_.data(); }
   /// 1 for solid particles with a liquid neighbour: the walls of the melt.
   const std::vector<std::uint8_t>& next_to_melt() const { return next_to_melt_; }
+  /// 1 for rows with a dummy of a box face among their neighbours.
+  const std::vector<std::uint8_t>& next_to_wall() const { return next_to_wall_; }
   std::size_t bytes() const;
   std::size_t pairs() const { return j_.size(); }
 
@@ -65,6 +69,7 @@ class PairList {
     for (Index k = first; k < last; ++k) {
       Pair<D> p;
       p.j = j[k];
+      p.k = k;
       p.x[0] = dx[0][k];
       p.x[1] = dx[1][k];
       if constexpr (D == 3) p.x[2] = dx[2][k];
@@ -84,17 +89,29 @@ class PairList {
     return out;
   }
 
-  /// Calls f(k, pair) for the neighbours of i; k is the position in the list.
+  /// Calls f(pair) for the neighbours of i, in order.
   template <int D, class F>
   void for_row(Index i, F&& f) const {
-    for (Index k = start_[i]; k < start_[i + 1]; ++k) {
-      Pair<D> p;
-      p.j = j_[k];
-      for (int c = 0; c < D; ++c) p.x[c] = dx_[c][k];
-      p.w = w_[k];
-      p.f = f_[k];
-      f(k, p);
-    }
+    for (Index k = start_[i]; k < start_[i + 1]; ++k) f(at<D>(k));
+  }
+
+  /// The same for an f that writes only to places owned by pair.k: the calls may run side by side.
+  template <int D, class F>
+  void for_row_simd(Index i, F&& f) const {
+    const Index first = start_[i], last = start_[i + 1];
+#pragma omp simd
+    for (Index k = first; k < last; ++k) f(at<D>(k));
+  }
+
+  template <int D>
+  Pair<D> at(Index k) const {
+    Pair<D> p;
+    p.j = j_[k];
+    p.k = k;
+    for (int c = 0; c < D; ++c) p.x[c] = dx_[c][k];
+    p.w = w_[k];
+    p.f = f_[k];
+    return p;
   }
 
  private:
@@ -111,7 +128,7 @@ class PairList {
   std::vector<Index> start_{0}, j_;
   Components dx_;
   std::vector<double> w_, f_;
-  std::vector<std::uint8_t> next_to_melt_, wanted_;
+  std::vector<std::uint8_t> next_to_melt_, next_to_wall_, wanted_;
   std::vector<Block> blocks_;
 };
 

@@ -42,6 +42,11 @@ class ViscousOperator {
   double rate(const Stage& stage) const;
 
  private:
+  template <int D, bool Physical, bool Interface>
+  std::array<double, D> row(const Stage& stage, Index i, const ConstField& u) const;
+  template <int D, class F>
+  void for_rows(const Stage& stage, const ConstField& u, F&& f) const;
+
   ViscousChoice choice_;
   std::vector<double> c_, d_;     ///< per pair
   std::vector<double> alpha_, mu_;

@@ -37,7 +37,7 @@ void Projection::assemble(const Stage& s) {
       const Index i = particle_of_[r];
       Index out = matrix_.start[r];
       double sum = 0;
-      pairs.for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
         const Index column = row_of_[p.j];
         if (column < 0) return;
         const double a = -scale * s.volume[i] * s.volume[p.j] * p.f;
@@ -83,7 +83,7 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
       parallel_for(rows(), [&](Index r) {
         const Index i = particle_of_[r];
         double sum = 0;
-        s.pairs->template for_row<D>(i, [&](Index, const sph::Pair<D>& p) {
+        s.pairs->template for_row<D>(i, [&](const sph::Pair<D>& p) {
           double v2 = 0, xv = 0;
           for (int c = 0; c < D; ++c) {
             const double dv = v[c][i] - v[c][p.j];
@@ -142,22 +142,28 @@ void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutF
     constexpr int D = d;
     using Matrix = Eigen::Matrix<double, D, D>;
     using Vector = Eigen::Matrix<double, D, 1>;
-    const double* const p = s.patch->pressure.data();
+    const double *const p = s.patch->pressure.data(), *const volume = s.volume.data();
+    const Index* const row_of = row_of_.data();
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       if (row_of_[i] < 0) return;
-      Vector gradient = Vector::Zero();
-      Matrix moment = Matrix::Zero();
-      const bool renormalise = entry == SurfaceEntry::pressure && s.surface[i] > 0;
-      s.pairs->for_row<D>(i, [&](Index, const sph::Pair<D>& q) {
-        const double vf = s.volume[q.j] * q.f;
-        if (row_of_[q.j] >= 0)
-          for (int c = 0; c < D; ++c) gradient[c] += vf * (p[q.j] - p[i]) * q.x[c];
-        if (renormalise)
+      const double pi = p[i];
+      // Partners outside the system (deeper solid, loose drops) have no pressure: zero normal derivative.
+      const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& q) {
+        const double g = row_of[q.j] >= 0 ? volume[q.j] * q.f * (p[q.j] - pi) : 0.0;
+        std::array<double, D> out;
+        for (int c = 0; c < D; ++c) out[c] = g * q.x[c];
+        return out;
+      });
+      Vector gradient;
+      for (int c = 0; c < D; ++c) gradient[c] = sum[c];
+      if (entry == SurfaceEntry::pressure && s.surface[i] > 0) {
+        Matrix moment = Matrix::Zero();
+        s.pairs->for_row<D>(i, [&](const sph::Pair<D>& q) {
+          const double vf = volume[q.j] * q.f;
           for (int a = 0; a < D; ++a)
             for (int b = 0; b < D; ++b) moment(a, b) -= vf * q.x[a] * q.x[b];
-      });
-      if (renormalise) {
+        });
         moment.diagonal().array() += 1e-3;
         gradient = moment.inverse() * gradient;
       } else {

@@ -116,8 +116,9 @@ TEST_CASE("free surface: a ball has a closed shell with radial normals and the a
       }
       CHECK(missed == 0);
       CHECK(inner == 0);
-      // Steps of a lattice tilt the outermost layer: a few degrees in the mean.
-      CHECK(std::sqrt(tilt2 / shell) < std::sin(10.0 / 57.3));
+      // A shell cut out of a lattice is a staircase; its steps tilt normals by up to half a spacing over the
+      // support of 2.6 spacings, 0.2 rad.
+      CHECK(std::sqrt(tilt2 / shell) < 0.2);
       const double r = cells * kDx, exact = dim == 3 ? 4 * M_PI * r * r : 2 * M_PI * r;
       CHECK(area == Approx(exact).epsilon(0.10));
     }
@@ -126,14 +127,14 @@ TEST_CASE("free surface: a ball has a closed shell with radial normals and the a
 TEST_CASE("free surface: the weight changes continuously while a particle sinks into the surface") {
   StageSetup s(3, kDx);
   s.fill(Vec3::Zero(), Vec3(9 * kDx, 9 * kDx, 6 * kDx), 2000);
-  s.add(Vec3(4.5 * kDx, 4.5 * kDx, 8.5 * kDx), 2000, true);
+  s.add(Vec3(4 * kDx, 4 * kDx, 8.5 * kDx), 2000, true);  // above a hollow of the lattice
   s.prepare(Vec3::Zero(), Vec3(9 * kDx, 9 * kDx, 12 * kDx), {true, true, false});
   Index moved = -1;
   for (Index i = 0; i < s.patch.size(); ++i)
     if (s.patch.x[2][i] > 8 * kDx) moved = i;
   double last_area = s.stage.area[moved], last = s.stage.surface[moved], jump = 0, area_jump = 0;
   CHECK(last == 1);
-  for (int k = 1; k <= 300; ++k) {
+  for (int k = 1; k <= 450; ++k) {
     s.patch.x[2][moved] = 8.5 * kDx - 0.01 * k * kDx;
     s.update();
     jump = std::max(jump, std::abs(s.stage.surface[moved] - last));

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include "meltray/terms/viscosity.hpp"
+#include "unit/terms/stage_setup.hpp"
+
+/// What every viscous operator has to fulfil.
+namespace meltray::test {
+
+inline Components acceleration(const StageSetup& s, const terms::ViscousOperator& op, const Components& v) {
+  Components a = s.zeros();
+  op.add_acceleration(s.stage, view(v), view(a));
+  return a;
+}
+inline Components acceleration(const StageSetup& s, const terms::ViscousOperator& op) {
+  return acceleration(s, op, s.patch.v);
+}
+
+inline double largest(const Components& a) {
+  double m = 0;
+  for (const auto& c : a)
+    for (double x : c) m = std::max(m, std::abs(x));
+  return m;
+}
+
+/// Sum of m u.w over the moving particles.
+inline double work(const StageSetup& s, const Components& u, const Components& w) {
+  double sum = 0;
+  for (Index i : s.stage.moving)
+    for (int c = 0; c < s.constants.dim; ++c) sum += s.patch.mass[i] * u[c][i] * w[c][i];
+  return sum;
+}
+
+inline Components random_field(const StageSetup& s, std::uint64_t seed) {
+  Noise noise(seed);
+  Components f = s.zeros();
+  for (int c = 0; c < s.constants.dim; ++c)
+    for (double& x : f[c]) x = noise();
+  return f;
+}
+
+/// A jittered block of liquid with free faces on all sides.
+inline void fill_jittered_block(StageSetup& s, int cells) {
+  const Vec3 max = Vec3::Constant(cells * s.constants.spacing), margin = Vec3::Constant(s.constants.spacing);
+  s.fill(Vec3::Zero(), max, 2000);
+  s.jitter(0.25);
+  s.prepare(-margin, max + margin);
+}
+
+inline void check_conservation_and_symmetry(const StageSetup& s, const terms::ViscousOperator& op) {
+  const auto u = random_field(s, 11), w = random_field(s, 12);
+  const auto au = acceleration(s, op, u), aw = acceleration(s, op, w);
+  for (int c = 0; c < s.constants.dim; ++c) {
+    double net = 0, gross = 0;
+    for (Index i : s.stage.moving) {
+      net += s.patch.mass[i] * au[c][i];
+      gross += s.patch.mass[i] * std::abs(au[c][i]);
+    }
+    CHECK(std::abs(net) < 1e-12 * gross);
+  }
+  CHECK(work(s, u, aw) == Approx(work(s, w, au)).epsilon(1e-10));
+  CHECK(work(s, u, au) < 0);
+  CHECK(work(s, w, aw) < 0);
+}
+
+/// (I - gamma A) x = b with A probed column by column against ViscousOperator::solve, and Gershgorin's bound.
+inline void check_solve_against_dense(const StageSetup& s, const terms::ViscousOperator& op, double gamma) {
+  const int dim = s.constants.dim;
+  const auto n = static_cast<Index>(s.stage.moving.size());
+  Eigen::MatrixXd a(dim * n, dim * n);
+  for (Index k = 0; k < n; ++k)
+    for (int c = 0; c < dim; ++c) {
+      Components unit = s.zeros();
+      unit[c][s.stage.moving[k]] = 1;
+      const auto column = acceleration(s, op, unit);
+      for (Index r = 0; r < n; ++r)
+        for (int e = 0; e < dim; ++e) a(dim * r + e, dim * k + c) = column[e][s.stage.moving[r]];
+    }
+  const auto b = random_field(s, 13);
+  Eigen::VectorXd rhs(dim * n);
+  for (Index r = 0; r < n; ++r)
+    for (int e = 0; e < dim; ++e) rhs[dim * r + e] = b[e][s.stage.moving[r]];
+  const Eigen::VectorXd exact =
+      (Eigen::MatrixXd::Identity(dim * n, dim * n) - gamma * a).partialPivLu().solve(rhs);
+  auto x = random_field(s, 14);
+  CHECK(op.solve(s.stage, gamma, view(b), view(x), 1e-12, 2000) > 0);
+  double worst = 0;
+  for (Index r = 0; r < n; ++r)
+    for (int e = 0; e < dim; ++e) worst = std::max(worst, std::abs(x[e][s.stage.moving[r]] - exact[dim * r + e]));
+  CHECK(worst < 1e-9 * exact.cwiseAbs().maxCoeff());
+  CHECK(op.solve(s.stage, gamma, view(b), view(x), 1e-12, 2000) == 0);  // from the solution
+  const double fastest = -a.eigenvalues().real().minCoeff();
+  CHECK(fastest <= 2 * op.rate(s.stage) * (1 + 1e-9));
+}
+
+}  // namespace meltray::test
