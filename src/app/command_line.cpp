@@ -2,13 +2,16 @@
 #include "meltray/app/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <new>
 
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/nearest.hpp"
 #include "meltray/observe/version.hpp"
 
 namespace meltray::app {
@@ -33,6 +36,17 @@ class CommandLine {
   }
 
   CLI::App& app() { return app_; }
+
+  /// CLI11 only says that a command is missing; this names what stands in its place.
+  void check_command(const std::string& word) const {
+    std::vector<std::string> names;
+    for (const CLI::App* c : app_.get_subcommands(nullptr)) names.push_back(c->get_name());
+    if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return;
+    const std::string nearest = nearest_name(word, names);
+    throw UsageError(fmt::format("found '{}' in place of a command; allowed {}{}", word,
+                                 fmt::join(names, ", "),
+                                 nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  }
 
  private:
   void add_run() {
@@ -89,8 +103,8 @@ class CommandLine {
   }
 
   void add_list() {
-    auto* c = app_.add_subcommand("list", "Lists cases, materials, terms, methods or kernels");
-    c->add_option("WHAT", what_, "cases, materials, terms, methods or kernels");
+    auto* c = app_.add_subcommand("list", "Lists cases, materials, terms, methods, kernels or keys");
+    c->add_option("WHAT", what_, "cases, materials, terms, methods, kernels or keys");
     c->callback([this] { command_ = [this] { return list(what_); }; });
   }
 
@@ -124,9 +138,12 @@ int run_command_line(int argc, char** argv) {
   std::function<int()> command;
   CommandLine line(command);
   try {
+    if (argc > 1) line.check_command(argv[1]);
     line.app().parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return line.app().exit(e) == 0 ? kExitOk : kExitUsage;
+  } catch (const UsageError& e) {
+    return complain(kExitUsage, e.what());
   }
   try {
     return command();

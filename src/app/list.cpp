@@ -12,6 +12,7 @@
 #include "meltray/core/nearest.hpp"
 #include "meltray/materials/material.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/case_file.hpp"
 
 namespace meltray::app {
 
@@ -94,6 +95,10 @@ void print(const Lines& lines) {
 }  // namespace
 
 int list(const std::string& what) {
+  if (what == "keys") {  // the reference page, cases/KEYS.md, is this output
+    fmt::print("{}", scene::key_reference());
+    return kExitOk;
+  }
   const std::vector<std::pair<std::string, Lines (*)()>> topics = {{"cases", cases},
                                                                    {"materials", materials},
                                                                    {"terms", terms},
@@ -101,9 +106,10 @@ int list(const std::string& what) {
                                                                    {"kernels", kernels}};
   std::vector<std::string> names;
   for (const auto& [name, lines] : topics) names.push_back(name);
+  names.emplace_back("keys");
   if (!what.empty() && std::find(names.begin(), names.end(), what) == names.end())
     throw UsageError(
-        fmt::format("list: found '{}'; allowed cases, materials, terms, methods, kernels; did you mean '{}'?",
+        fmt::format("list: found '{}'; allowed cases, materials, terms, methods, kernels, keys; did you mean '{}'?",
                     what, nearest_name(what, names)));
   for (const auto& [name, lines] : topics) {
     if (!what.empty() && what != name) continue;

@@ -24,6 +24,20 @@ terms::RecoilOnset onset(RecoilOnset o) {
   return terms::RecoilOnset::smooth;
 }
 
+/// The largest of the speeds that a scene names or implies [m/s]; the time constant of the `stage` projection's
+/// drift term rests on it.
+double expected_speed(const Scene& scene) {
+  const Domain& domain = scene.domain;
+  double speed = std::max(scene.flow.reference_speed, std::abs(domain.velocity_scale));
+  for (const Body& body : domain.bodies) speed = std::max(speed, body.velocity.norm());
+  for (const Face& face : domain.faces) speed = std::max(speed, face.velocity.norm());
+  const double rho = scene.material.density, height = (domain.max - domain.min)[domain.dimension - 1];
+  if (scene.terms.gravity) speed = std::max(speed, std::sqrt(domain.gravity * height));
+  if (scene.terms.surface_tension)
+    speed = std::max(speed, std::sqrt(scene.material.sigma(scene.material.liquidus) / (rho * domain.spacing)));
+  return speed > 0 ? speed : 1.0;
+}
+
 bool initially_implicit(PartitionChoice c) { return c == PartitionChoice::implicit_; }
 
 }  // namespace
@@ -44,8 +58,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   projection_options_ = {scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf
                                                                   : terms::SurfaceEntry::pressure,
                          flow.pressure_tolerance, flow.pressure_max_iterations};
-  drift_time = flow.drift_time > 0 ? flow.drift_time
-                                   : 0.2 * constants.spacing / std::max(flow.reference_speed, 1e-300);
+  drift_time = flow.drift_time > 0 ? flow.drift_time : 0.2 * constants.spacing / expected_speed(scene);
   partitions = {initially_implicit(scene.time.conduction), initially_implicit(scene.time.viscosity),
                 initially_implicit(scene.time.interface_viscosity), initially_implicit(scene.time.evaporation)};
   stage.constants = &constants_;
