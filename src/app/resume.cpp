@@ -102,6 +102,10 @@ int resume(const ResumeArguments& arguments) {
     scene.time.end = end;
     write_case_file(folder, scene);
   }
+  // Where scheduled checkpoints are asked for and the first one was not reached, only a new start takes the
+  // path of the uninterrupted run.
+  const double interval = scene.output.checkpoint_interval;
+  if (checkpoint && !checkpoint->header.scheduled && checkpoint->header.time < interval) checkpoint.reset();
 
   catch_signals();
   const std::string name = observe::recorded_case(folder.path());
@@ -122,11 +126,11 @@ int resume(const ResumeArguments& arguments) {
                done));
     if (!checkpoint->header.scheduled)
       tell(arguments.quiet,
-           "no scheduled checkpoint yet: going on from the one written when the run was stopped; the result "
+           "no scheduled checkpoint: going on from the one written when the run was stopped; the result "
            "differs "
            "from the uninterrupted run by round-off (output.checkpoint_interval sets scheduled ones)");
   } else {
-    tell(arguments.quiet, "no checkpoint yet: starting again from t = 0");
+    tell(arguments.quiet, "no scheduled checkpoint yet: starting again from t = 0");
     state.case_fingerprint = fingerprint(scene);
     std::error_code ignored;
     fs::remove(folder.file("history.csv"), ignored);

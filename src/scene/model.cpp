@@ -118,11 +118,15 @@ void Model::invalidate() {
 void Model::evaluate(double t, const double* y) {
   const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
-  const bool same_x = geometry_valid_ && last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin());
+  // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
+  // coefficients that rest on them are frozen at the start of the step, and renewed for the projection.
+  const bool same_x = geometry_valid_ && last_y_.size() == n &&
+                      (freezes_geometry() || std::equal(y, y + dim * nm, last_y_.begin()));
   const bool same_h = last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
   const bool same_v =
       last_y_.size() == n && std::equal(y + dim * nm, y + 2 * dim * nm, last_y_.begin() + dim * nm);
-  if (same_x && same_h && same_v && t == stage.t) return;
+  const bool moved = !(last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin()));
+  if (same_x && same_h && same_v && !moved && t == stage.t) return;
   last_y_.assign(y, y + n);
   stage.t = t;
   for (int c = 0; c < dim; ++c) {
@@ -155,7 +159,8 @@ void Model::evaluate(double t, const double* y) {
     if (scene_.terms.wetting) wetting_.turn_normals(stage);
   }
   geometry_valid_ = true;
-  if (!same_x || !same_h) implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+  if (!same_x || (!same_h && !freezes_geometry()))
+    implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
 }
 
 /// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure solve needs it.

@@ -78,6 +78,7 @@ class Model : public OdeProblem {
   void count_solve(const solve::SolveReport& report, double t);
   terms::ViscousChoice viscous(bool implicit_part) const;
   bool needs_surface() const;
+  bool freezes_geometry() const { return flows() && scene_.flow.projection == Projection::step; }
 
   const Scene& scene_;
   const terms::SceneConstants& constants_;

@@ -19,6 +19,7 @@ void Model::count_solve(const solve::SolveReport& report, double t) {
 }
 
 void Model::project(double t, double dt, const std::vector<double>& y) {
+  invalidate();
   evaluate(t, y.data());
   update_surface_pressure();
   const auto timer = timers_.measure(Part::pressure);

@@ -8,7 +8,7 @@
 namespace meltray::sph {
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing) {
-  LatticeSums sums{0, 0, 0, 0};
+  LatticeSums sums{0, 0, 0, 0, 0, 0};
   const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
   const double volume = std::pow(spacing, dim), inv_h = 1 / smoothing;
   double face = 0;
@@ -19,16 +19,22 @@ LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoo
         for (int b = -reach; b <= reach; ++b)
           for (int c = dim == 3 ? -reach : 0; c <= (dim == 3 ? reach : 0); ++c) {
             const double x = a * spacing, r = spacing * std::sqrt(double(a * a + b * b + c * c));
-            sums.shepard += volume * Kernel::w(r, inv_h);
+            const double w = volume * Kernel::w(r, inv_h);
+            sums.shepard += w;
+            if (a <= 0) sums.face_fill += w;
             if (r == 0) continue;
             const double f = volume * Kernel::f(r, inv_h);
             sums.laplacian -= f;
             sums.second_moment -= f * x * x;
-            if (a <= 0) face += f * x;
+            if (a > 0) continue;
+            face += f * x;
+            sums.face_diagonal -= f;
           }
     });
   });
   sums.face_gradient = 2 * std::abs(face) * spacing;
+  sums.face_fill /= sums.shepard;
+  sums.face_diagonal /= sums.laplacian;
   return sums;
 }
 

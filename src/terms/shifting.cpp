@@ -5,6 +5,13 @@
 
 namespace meltray::terms {
 
+namespace {
+
+/// Largest shifting velocity over the particle's own speed.
+constexpr double kLargest = 0.2;
+
+}  // namespace
+
 void Shifting::add_rates(const Stage& s, const MutField& transport, const MutField& acceleration) const {
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
@@ -24,9 +31,15 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
           for (int c = 0; c < D; ++c) out[c] = g * p.x[c];
           return out;
         });
-        double speed = 0;
-        for (int c = 0; c < D; ++c) speed += v[c][i] * v[c][i];
-        const double scale = -coefficient * s.constants->smoothing * std::sqrt(speed) * inside;
+        double speed = 0, gradient = 0;
+        for (int c = 0; c < D; ++c) {
+          speed += v[c][i] * v[c][i];
+          gradient += sum[c] * sum[c];
+        }
+        // C h |sum| / (1 + C h |sum| / kLargest): a particle is never shifted faster than a share of its speed.
+        const double strength = coefficient * s.constants->smoothing;
+        const double scale =
+            -strength * std::sqrt(speed) * inside / (1 + strength * std::sqrt(gradient) / kLargest);
         double du[D];
         for (int c = 0; c < D; ++c) {
           du[c] = scale * sum[c];

@@ -7,7 +7,8 @@ namespace meltray::terms {
 
 namespace {
 
-constexpr double kSurfaceFull = 0.86, kSurfaceNone = 0.94;
+constexpr double kSurfaceFull = 0.86, kSurfaceNone = 0.94;    // Shepard sum
+constexpr double kExposureFull = 0.60, kExposureNone = 0.35;  // colour gradient
 /// Fewest neighbours of a particle that takes part in the pressure field.
 constexpr Index kFewestNeighbours[2] = {6, 14};
 
@@ -20,7 +21,7 @@ double Stage::area_of_spacing() const {
 void prepare_stage(Stage& s) {
   const Index n = s.size();
   for (auto* a : {&s.volume, &s.temperature}) a->resize(n);
-  for (auto* a : {&s.fill, &s.diagonal, &s.surface, &s.area, &s.surface_pressure}) a->assign(n, 0.0);
+  for (auto* a : {&s.fill, &s.diagonal, &s.exposure, &s.surface, &s.area, &s.surface_pressure}) a->assign(n, 0.0);
   for (int c = 0; c < s.constants->dim; ++c) {
     s.grad_c[c].assign(n, 0.0);
     s.normal[c].assign(n, 0.0);
@@ -38,7 +39,7 @@ void prepare_stage(Stage& s) {
 void compute_surface(Stage& s) {
   const auto& lattice = s.constants->lattice;
   const double* const volume = s.volume.data();
-  const double face_scale = 1 / lattice.face_gradient;
+  const double site = s.area_of_spacing(), spacing = s.constants->spacing;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     with_kernel<D>(s.constants->kernel, [&](auto kernel) {
@@ -47,7 +48,7 @@ void compute_surface(Stage& s) {
       parallel_for(s.size(), [&](Index i) {
         const Index count = pairs.end(i) - pairs.begin(i);
         s.loose[i] = 0;
-        s.surface[i] = s.area[i] = 0;
+        s.surface[i] = s.area[i] = s.exposure[i] = 0;
         for (int c = 0; c < D; ++c) s.normal[c][i] = s.grad_c[c][i] = 0;
         s.fill[i] = s.diagonal[i] = 1;
         if (count == 0 && !s.patch->liquid[i]) return;  // not a row: asleep or only a neighbour
@@ -69,12 +70,18 @@ void compute_surface(Stage& s) {
           norm += sum[2 + c] * sum[2 + c];
         }
         norm = std::sqrt(norm);
-        const double t = std::clamp((kSurfaceNone - s.fill[i]) / (kSurfaceNone - kSurfaceFull), 0.0, 1.0);
+        s.exposure[i] = std::min(1.0, 2 * norm * spacing / lattice.face_gradient);
+        const double t = std::clamp(std::max((kSurfaceNone - s.fill[i]) / (kSurfaceNone - kSurfaceFull),
+                                             (s.exposure[i] - kExposureNone) / (kExposureFull - kExposureNone)),
+                                    0.0, 1.0);
         // Dummies behind a face end where the box ends: that is not a free surface.
         s.surface[i] = s.patch->wall[i] ? 0.0 : t * t * (3 - 2 * t);
         if (s.surface[i] > 0 && norm > 0)
           for (int c = 0; c < D; ++c) s.normal[c][i] = -sum[2 + c] / norm;
-        s.area[i] = s.surface[i] * 2 * norm * volume[i] * face_scale;
+        // The missing part of the kernel measures how much of a particle is open: a particle of a flat face carries
+        // the area of one lattice site, one at an edge or in a drop more. The colour gradient alone would not do:
+        // it vanishes by symmetry for a thin sheet or a lone particle, which then could not cool.
+        s.area[i] = s.surface[i] * site * std::max((1 - s.fill[i]) / (1 - lattice.face_fill), s.exposure[i]);
       });
     });
   });

@@ -53,7 +53,7 @@ SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region);
 enum class Polarisation { averaged, tracked };
 
 struct TraceOptions {
-  int rays = 2000;
+  int rays = 1000;
   Polarisation polarisation = Polarisation::averaged;
   std::optional<double> fixed_absorptance;  ///< replaces Fresnel when set
   std::complex<double> index_solid{1, 0}, index_liquid{1, 0};

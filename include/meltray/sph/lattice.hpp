@@ -12,6 +12,8 @@ struct LatticeSums {
   double laplacian = 1;    ///< sum of -V F [1/m^2]
   double second_moment = 1;///< sum of -V F x^2 for one axis: the factor by which 2 sum V F f_ij misses a Laplacian
   double face_gradient = 1;///< 2 |sum V F x| dx of the outermost layer of a flat face
+  double face_fill = 1;    ///< Shepard sum of that layer over `shepard`
+  double face_diagonal = 1;///< its Laplacian sum over `laplacian`
 };
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing);

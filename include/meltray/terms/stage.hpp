@@ -54,6 +54,7 @@ struct Stage {
   // Free surface (filled by compute_surface when a term needs it; zero elsewhere).
   std::vector<double> fill;         ///< Shepard sum over that of a full lattice
   std::vector<double> diagonal;     ///< Laplacian sum over that of a full lattice
+  std::vector<double> exposure;     ///< |grad c| over that of a flat face, at most 1
   std::vector<double> surface;      ///< 1 on the free surface, 0 inside, continuous in between
   Components grad_c;                ///< gradient of the colour function, into the material [1/m]
   Components normal;                ///< unit normal out of the material (zero where surface = 0)
@@ -71,7 +72,9 @@ void prepare_stage(Stage& stage);
 
 /// Finds the free surface: Shepard sum, colour gradient, continuous surface weight, normals and areas, for
 /// every row of the list. A particle of a flat face has a Shepard sum near 0.79 (h = 1.3 dx), one layer below
-/// it 0.997, so a weight that falls from 1 at 0.86 to 0 at 0.94 tells them apart without a jump in time.
+/// it 0.997, so a weight that falls from 1 at 0.86 to 0 at 0.94 tells them apart without a jump in time. Recoil
+/// can press the outermost layer together until its Shepard sum is full; the colour gradient (exposure 1 on a flat
+/// face, 0.06 below it, under 0.2 in disordered bulk) still shows it, so either of the two makes a surface.
 void compute_surface(Stage& stage);
 
 }  // namespace meltray::terms

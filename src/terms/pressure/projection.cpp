@@ -29,8 +29,9 @@ void Projection::assemble(const Stage& s) {
   }
   matrix_.column.resize(matrix_.start[rows]);
   matrix_.off.resize(matrix_.start[rows]);
-  const double scale = 2 / (s.constants->density * s.constants->lattice.second_moment);
-  const double full = scale * s.constants->lattice.laplacian;
+  const auto& lattice = s.constants->lattice;
+  const double scale = 2 / (s.constants->density * lattice.second_moment);
+  const double full = scale * lattice.laplacian;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     parallel_for(rows, [&](Index r) {
@@ -45,7 +46,9 @@ void Projection::assemble(const Stage& s) {
         matrix_.off[out++] = a;
         sum += a;
       });
-      ghost_[r] = s.surface[i] * full * s.volume[i] * std::max(0.0, 1 - s.diagonal[i]);
+      // The exposed share counts even where the layer is pressed together and its own sum is full.
+      const double missing = std::max(1 - s.diagonal[i], (1 - lattice.face_diagonal) * s.exposure[i]);
+      ghost_[r] = s.surface[i] * full * s.volume[i] * missing;
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });
@@ -101,10 +104,14 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
 
 void Projection::compression(const Stage& s, std::vector<double>& out) const {
   out.resize(particle_of_.size());
+  const double open = 1 - s.constants->lattice.face_fill;
   parallel_for(rows(), [&](Index r) {
     const Index i = particle_of_[r];
-    const double excess = s.fill[i] - 1;
-    out[r] = s.patch->wall[i] ? 0.0 : s.fill[i] > 0.97 && s.surface[i] == 0 ? excess : std::max(0.0, excess);
+    // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything emptier
+    // than that is shape, not density.
+    const double excess = s.fill[i] + open * s.exposure[i] - 1;
+    const bool inside = s.surface[i] == 0 && s.fill[i] > 0.97;
+    out[r] = s.patch->wall[i] ? 0.0 : inside ? s.fill[i] - 1 : std::max(0.0, excess);
   });
 }
 

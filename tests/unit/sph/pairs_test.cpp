@@ -95,7 +95,7 @@ TEST_CASE("rows of the pair list are the neighbours found by brute force") {
         double worst = 0;
         sph::with_dim(dim, [&](auto d) {
           for (Index i = 0; i < patch.size(); ++i)
-            pairs.for_row<d>(i, [&](Index, const sph::Pair<d>& q) {
+            pairs.for_row<d>(i, [&](const sph::Pair<d>& q) {
               const double r = distance(patch, i, q.j, grid.period());
               worst = std::max(worst, std::abs(std::sqrt(q.r2()) - r) / dx);
               worst = std::max(worst, std::abs(q.w / sph::WendlandC2<d>::w(r, 1 / (1.3 * dx)) - 1) *

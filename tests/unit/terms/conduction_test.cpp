@@ -31,6 +31,7 @@ TEST_CASE("conduction: a linear profile between walls at its end temperatures is
     s.fill(Vec3::Zero(), max, 1000, false);
     s.dummies(0, Vec3::Zero(), max, 400);
     s.dummies(1, Vec3::Zero(), max, 1000);
+    s.constants.any_isothermal = true;
     for (int f : {0, 1}) {
       s.constants.faces[f].isothermal = true;
       s.constants.faces[f].temperature = f ? 1000 : 400;
@@ -194,7 +195,7 @@ TEST_CASE("conduction: the implicit solve is that of the dense matrix, walls and
   s.fill(Vec3::Zero(), max, 1000, false);
   s.jitter(0.2);
   s.dummies(4, Vec3::Zero(), max, 500);
-  s.constants.faces[4].isothermal = true;
+  s.constants.faces[4].isothermal = s.constants.any_isothermal = true;
   s.constants.faces[4].temperature = 500;
   s.prepare(Vec3(0, 0, -3 * kDx), max, {true, true, false});
   Noise noise(8);

@@ -44,26 +44,23 @@ TEST_CASE("interface viscosity: rigid motion is free of force") {
   CHECK(test::largest(test::acceleration(s, op)) < 1e-12 * scale);
 }
 
-TEST_CASE("interface viscosity: acts like the kinematic viscosity alpha h c / (2 (D + 2))") {
-  // Monaghan 2005, sect. 4.2: nu = alpha h c / 8 in 2-D, / 10 in 3-D for a shear wave, here at T below melting,
-  // where the solid part is full everywhere. The 0.01 h^2 in the denominator and the lattice (whose fourth
-  // moments are not isotropic at h = 1.3 dx) change it by some per cent.
-  for (int dim : {2, 3}) {
-    StageSetup s(dim, kDx);
-    const Vec3 max(9 * kDx, 40 * kDx, dim == 3 ? 9 * kDx : 0.0);
-    s.fill(Vec3::Zero(), max, 1800);
-    s.prepare(Vec3::Zero(), max, {true, true, dim == 3});
-    const double k = 2 * M_PI / max[1], nu = 1.0 * 1.3 * kDx * 50 / (2 * (dim + 2));
-    s.set_velocity([&](const Vec3& x) { return Vec3(std::sin(k * x[1]), 0, 0); });
+TEST_CASE("interface viscosity: acts like the kinematic viscosity alpha h c / 8 in 2-D") {
+  // Monaghan 2005, sect. 4.2: nu = alpha h c / 8 in 2-D, here at T below melting, where the solid part is full
+  // everywhere. A lattice is stiffer along its diagonals than along its axes: the mean of the two shear waves at
+  // 0 and 45 degrees is the isotropic value, less what 0.01 h^2 in the denominator takes (2 to 3 %).
+  StageSetup s(2, kDx);
+  const Vec3 max(40 * kDx, 40 * kDx, 0.0);
+  s.fill(Vec3::Zero(), max, 1800);
+  s.prepare(Vec3::Zero(), max, {true, true, false});
+  const double k = 2 * M_PI / max[1], nu = 1.3 * kDx * 50 / 8;
+  const auto rate = [&](const Vec3& wave, const Vec3& along) {
+    s.set_velocity([&](const Vec3& x) -> Vec3 { return along * std::sin(wave.dot(x)); });
     const auto a = test::acceleration(s, interface(s, {0, 1, 50, 50}));
-    double top = 0, norm = 0;
-    for (Index i = 0; i < s.patch.size(); ++i) {
-      top -= a[0][i] * s.patch.v[0][i];
-      norm += s.patch.v[0][i] * s.patch.v[0][i];
-    }
-    CAPTURE(dim);
-    CHECK(top / norm == Approx(nu * k * k).epsilon(0.08));
-  }
+    return -test::work(s, a, s.patch.v) / test::work(s, s.patch.v, s.patch.v) / wave.squaredNorm();
+  };
+  const double aligned = rate(Vec3(0, k, 0), Vec3(1, 0, 0)), diagonal = rate(Vec3(k, k, 0), Vec3(1, -1, 0));
+  CAPTURE(aligned / nu, diagonal / nu);
+  CHECK(0.5 * (aligned + diagonal) == Approx(nu).epsilon(0.05));
 }
 
 TEST_CASE("interface viscosity: only where the surface or melting is, scaled by its coefficients") {
@@ -79,7 +76,7 @@ TEST_CASE("interface viscosity: only where the surface or melting is, scaled by 
   for (Index i = 0; i < s.patch.size(); ++i) {
     const double z = s.patch.x[2][i] / kDx;
     const double size = std::abs(hot[0][i]) + std::abs(hot[1][i]) + std::abs(hot[2][i]);
-    const bool near = z > 8 || z < 4;  // within 2.6 dx of a surface layer
+    const bool near = z > 9 || z < 3;  // within 2.6 dx of a surface layer
     wrong += near ? size == 0 : size != 0;
     wrong += std::abs(half[1][i] - 0.5 * hot[1][i]) > 1e-12 * std::abs(hot[1][i]);
   }

@@ -65,10 +65,10 @@ TEST_CASE("shifting: evens out a jittered set") {
     StageSetup s(dim, kDx);
     periodic_block(s, dim == 3 ? 10 : 24, 0.25);
     const double before = unevenness(s);
-    const double dt = 0.1 * s.constants.smoothing;  // at 1 m/s: 0.1 h a step
+    const double dt = 0.05 * s.constants.smoothing;  // at 1 m/s: 0.05 h a step
     s.set_velocity([](const Vec3&) { return Vec3(0.6, 0.8, 0); });
     double last = before;
-    for (int k = 0; k < 20; ++k) {
+    for (int k = 0; k < 40; ++k) {
       const auto f = shift(s);
       CHECK(largest(f.acceleration) < 1e-9);  // nothing to carry along in a uniform flow
       for (int c = 0; c < dim; ++c)
@@ -79,6 +79,22 @@ TEST_CASE("shifting: evens out a jittered set") {
     }
     CHECK(last < 0.5 * before);
   }
+}
+
+// Measured: with C = 4 steps of 0.1 h/|v| even out (2-D at a jitter of 0.25 dx: not even they), 0.2 h/|v| scatters
+// all particles within ten steps.
+TEST_CASE("shifting: stable at an advective Courant number of 0.2", "[!shouldfail]") {
+  StageSetup s(3, kDx);
+  periodic_block(s, 10, 0.05);
+  const double before = unevenness(s), dt = 0.2 * s.constants.smoothing;
+  s.set_velocity([](const Vec3&) { return Vec3(0.6, 0.8, 0); });
+  for (int k = 0; k < 10; ++k) {
+    const auto f = shift(s);
+    for (int c = 0; c < 3; ++c)
+      for (Index i = 0; i < s.patch.size(); ++i) s.patch.x[c][i] += dt * f.transport[c][i];
+    s.update();
+  }
+  CHECK(unevenness(s) < before);
 }
 
 TEST_CASE("shifting: the velocity carried along is du . grad v") {
@@ -105,20 +121,26 @@ TEST_CASE("shifting: the velocity carried along is du . grad v") {
   CHECK(std::sqrt(error / size) < 0.06);
 }
 
-TEST_CASE("shifting: surface particles stay, and the coefficient scales the rest") {
+TEST_CASE("shifting: surface particles stay; the rest follow C, saturated at a fifth of their speed") {
   StageSetup s(3, kDx);
-  test::Noise noise(1);
   const Vec3 max = Vec3::Constant(10 * kDx);
   s.fill(Vec3::Zero(), max, 2000);
   s.jitter(0.1);
   s.prepare(Vec3::Constant(-kDx), max + Vec3::Constant(kDx));
-  s.set_velocity([](const Vec3&) { return Vec3(1, 0, 0); });
+  s.set_velocity([](const Vec3&) { return Vec3(3, 0, 0); });
   const auto one = shift(s, 1), four = shift(s, 4);
-  double scaled = 0;
+  double worst = 0;
+  int inner = 0;
   for (Index i = 0; i < s.patch.size(); ++i) {
-    if (s.stage.surface[i] == 1) CHECK(s.vector(four.transport, i).norm() == 0);
-    scaled = std::max(scaled, (4 * s.vector(one.transport, i) - s.vector(four.transport, i)).norm());
+    const Vec3 a = s.vector(one.transport, i), b = s.vector(four.transport, i);
+    if (s.stage.surface[i] == 1) CHECK(b.norm() == 0);
+    CHECK(b.norm() < 0.2 * 3);
+    if (s.stage.surface[i] > 0 || a.norm() == 0) continue;
+    ++inner;
+    // |du| = u/(1 + u/(0.2 |v|)) with u proportional to C: 1/u = 1/|du| - 1/(0.2 |v|) falls to a quarter.
+    const double first = 1 / a.norm() - 1 / 0.6, second = 1 / b.norm() - 1 / 0.6;
+    worst = std::max({worst, std::abs(first / second / 4 - 1), (a.normalized() - b.normalized()).norm()});
   }
-  CHECK(scaled < 1e-12);
-  CHECK(largest(four.transport) > 0);
+  CHECK(inner > 100);
+  CHECK(worst < 1e-9);
 }

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "meltray/app/commands.hpp"
+#include "meltray/core/constants.hpp"
+#include "meltray/core/errors.hpp"
+#include "meltray/core/parallel.hpp"
+#include "meltray/scene/case_file.hpp"
+#include "meltray/scene/simulation.hpp"
+
+namespace meltray::app {
+namespace {
+
+using scene::Scene;
+using scene::Simulation;
+
+/// Speed of melt in a developed weld pool, for limits and estimates before there is one [m/s].
+constexpr double kPoolSpeed = 5;
+/// Liquid particles of a developed pool: its width and length in focal diameters, its depth per power.
+constexpr double kPoolWidth = 2, kPoolLength = 4, kDepthPerPower = 1e-6;  // the last in [m/W]
+/// Wall time of one step per liquid particle and core [s], of a weld on two cores. A rough figure.
+constexpr double kSecondsPerParticleStep = 4e-6;
+
+void heading(const char* text) {
+  fmt::print("\n# {}\n", text);
+}
+void line(const std::string& name, const std::string& value) {
+  fmt::print("  {:<34} {}\n", name, value);
+}
+
+bool is_inside(const scene::Body& b, const Vec3& x, int dim, double slack) {
+  double r2 = 0;
+  for (int c = 0; c < dim; ++c) {
+    if (b.shape == scene::ShapeKind::box && (x[c] < b.min[c] - slack || x[c] > b.max[c] + slack))
+      return false;
+    if (b.shape == scene::ShapeKind::ball) r2 += std::pow((x[c] - b.center[c]) / (b.radii[c] + slack), 2);
+  }
+  return r2 <= 1;
+}
+
+void print_terms(const Simulation& simulation) {
+  heading("terms: partition, or why skipped");
+  for (const auto& term : simulation.terms()) line(term.name, term.partition);
+}
+
+void print_particles(const Simulation& simulation) {
+  heading("particles");
+  const Scene& s = simulation.scene();
+  const Particles& p = simulation.particles();
+  const double slack = s.domain.jitter * s.domain.spacing;
+  std::vector<std::size_t> count(s.domain.bodies.size(), 0);
+  std::size_t dummies = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.is_wall(i)) {
+      ++dummies;
+      continue;
+    }
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < p.dim; ++c) x[c] = p.x[c][i];
+    // Later bodies replace earlier ones; jittered particles may stand a little outside.
+    for (const double tolerance : {0.0, slack}) {
+      auto b = count.size();
+      while (b > 0 && !is_inside(s.domain.bodies[b - 1], x, p.dim, tolerance)) --b;
+      if (b == 0) continue;
+      ++count[b - 1];
+      break;
+    }
+  }
+  line("all", fmt::format("{}", p.size()));
+  for (std::size_t b = 0; b < count.size(); ++b)
+    line(fmt::format("body {} ({})", b, s.domain.bodies[b].shape == scene::ShapeKind::box ? "box" : "ball"),
+         fmt::format("{} at {:g} K", count[b], s.domain.bodies[b].temperature));
+  line("wall dummies", fmt::format("{}", dummies));
+  line("liquid at t = 0", fmt::format("{}", simulation.liquid_count()));
+  line("in the state vector at t = 0", fmt::format("{}", simulation.active_count()));
+}
+
+void print_memory(const Simulation& simulation) {
+  heading("memory at t = 0 [MB]");
+  double sum = 0;
+  for (const auto& [name, bytes] : simulation.memory()) {
+    line(name, fmt::format("{:.1f}", bytes / 1e6));
+    sum += bytes / 1e6;
+  }
+  line("together", fmt::format("{:.1f}", sum));
+}
+
+struct Limit {
+  std::string name;
+  double seconds;
+};
+
+/// Limits of a pool that is not there yet; explicit terms as if they were explicit, with coefficients at h:
+/// Morris et al. 1997, 0.25 sqrt(rho h^3/(2 pi sigma)) and 0.125 h^2/nu, with the case's own Courant numbers.
+std::vector<Limit> developed_limits(const Scene& s) {
+  const Material& m = s.material;
+  const double h = s.domain.smoothing_ratio * s.domain.spacing;
+  std::vector<Limit> out;
+  const auto viscous = [h](double nu) { return 0.125 * h * h / nu; };
+  if (s.terms.pressure) out.push_back({"advective", s.time.cfl_advective * h / kPoolSpeed});
+  if (s.terms.surface_tension)
+    out.push_back({"capillary", s.time.cfl_capillary * std::sqrt(m.density * h * h * h /
+                                                                 (2 * constants::pi * m.sigma(m.liquidus)))});
+  if (s.terms.interface_viscosity) {
+    const double alpha = std::max(s.flow.interface_viscosity_free, s.flow.interface_viscosity_solid);
+    const double nu = alpha * h * s.flow.reference_speed / (2 * (s.domain.dimension + 2));
+    out.push_back({"interface viscosity, if explicit", viscous(nu)});
+  }
+  if (s.terms.viscosity)
+    out.push_back({"viscosity, if explicit", viscous(m.viscosity(m.liquidus) / m.density)});
+  if (s.terms.conduction) out.push_back({"conduction, if explicit", viscous(m.thermal_diffusivity_max())});
+  if (s.laser && s.laser->beam.feed > 0)
+    out.push_back({"beam", s.time.beam_travel * 0.5 * s.laser->beam.focal_diameter / s.laser->beam.feed});
+  return out;
+}
+
+/// Prints limits, shortest first, and returns the shortest of those that bind whatever the partition.
+double print_limits(const char* title, std::vector<Limit> limits) {
+  heading(title);
+  std::sort(limits.begin(), limits.end(),
+            [](const Limit& a, const Limit& b) { return a.seconds < b.seconds; });
+  double binding = 0;
+  for (const Limit& l : limits) {
+    const bool optional = l.name.find("if explicit") != std::string::npos;
+    const bool binds = binding == 0 && !optional;
+    if (binds) binding = l.seconds;
+    line(l.name, fmt::format("{:.3g}{}", l.seconds, binds ? "   <- binds" : ""));
+  }
+  if (limits.empty()) line("none", "error control or time.max_step_s sets the step");
+  return binding;
+}
+
+void print_derived(const Scene& s) {
+  heading("derived numbers");
+  const scene::Domain& d = s.domain;
+  const Material& m = s.material;
+  const double h = d.smoothing_ratio * d.spacing;
+  int neighbours = 0;
+  const int reach = static_cast<int>(std::ceil(2 * d.smoothing_ratio));
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j)
+      for (int k = d.dimension == 3 ? -reach : 0; k <= (d.dimension == 3 ? reach : 0); ++k)
+        neighbours += i * i + j * j + k * k < 4 * d.smoothing_ratio * d.smoothing_ratio;
+  line("smoothing length h [m]", fmt::format("{:.4g}", h));
+  line("support radius 2h [m]", fmt::format("{:.4g}", 2 * h));
+  line("lattice neighbours", fmt::format("{}", neighbours - 1));
+  line("thermal diffusivity [m^2/s]", fmt::format("{:.3g}", m.thermal_diffusivity_max()));
+  if (s.laser && s.laser->beam.feed > 0)
+    line("Peclet number, feed and spot radius",
+         fmt::format("{:.3g}",
+                     s.laser->beam.feed * 0.5 * s.laser->beam.focal_diameter / m.thermal_diffusivity_max()));
+  if (s.terms.recoil && s.surface.recoil_pressure == 0) {
+    const double p = s.surface.recoil_coefficient * m.saturation_pressure(m.boiling_temperature);
+    line("recoil pressure at T_b [Pa]", fmt::format("{:.4g}", p));
+    line("recoil velocity sqrt(2 p/rho) [m/s]", fmt::format("{:.3g}", std::sqrt(2 * p / m.density)));
+  }
+  if (s.laser && s.terms.surface_tension)
+    line("sigma / spot radius [Pa]",
+         fmt::format("{:.4g}", m.sigma(m.liquidus) / (0.5 * s.laser->beam.focal_diameter)));
+}
+
+void print_laser(const Scene& s) {
+  if (!s.laser) return;
+  heading("laser");
+  const laser::BeamSpec& b = s.laser->beam;
+  const laser::TraceOptions& t = s.laser->trace;
+  line("power [W]",
+       b.modulation == laser::Modulation::sine    ? fmt::format("{:g} + {:g} sin(2 pi {:g} Hz t + {:g} deg)",
+                                                                b.power, b.amplitude, b.frequency, b.phase_deg)
+       : b.modulation == laser::Modulation::table ? fmt::format("table of {} rows", b.table.size())
+                                                  : fmt::format("{:g}", b.power));
+  line("profile", fmt::format("{}, focal diameter {:g} m, focus at z = {:g} m",
+                              b.profile == laser::Profile::gaussian ? "gaussian" : "top-hat",
+                              b.focal_diameter, b.focus_z));
+  line("Rayleigh length [m]",
+       b.rayleigh_length < 1e299 ? fmt::format("{:g}", b.rayleigh_length) : "no divergence");
+  line("incidence [deg], feed [m/s]", fmt::format("{:g}, {:g}", b.incidence_deg, b.feed));
+  if (t.fixed_absorptance)
+    line("absorptance", fmt::format("{:g} at every bounce", *t.fixed_absorptance));
+  else
+    line("absorptance at normal incidence",
+         fmt::format("solid {:.3f}, liquid {:.3f} (Fresnel)", laser::absorptance(s.material.index_solid, 1),
+                     laser::absorptance(s.material.index_liquid, 1)));
+  line("rays, retrace at latest every [s]", fmt::format("{}, {:g}", t.rays, s.laser->retrace_interval));
+}
+
+/// Liquid particles to expect: those at the start, or a pool of a stated size where a laser melts solid.
+double expected_liquid(const Simulation& simulation) {
+  const Scene& s = simulation.scene();
+  const double now = static_cast<double>(simulation.liquid_count());
+  if (now > 0 || !s.laser || !s.terms.melting) return now;
+  const double spot = s.laser->beam.focal_diameter;
+  const double volume = kPoolWidth * spot * kPoolLength * spot * kDepthPerPower * s.laser->beam.power;
+  std::size_t material = 0;
+  for (std::size_t i = 0; i < simulation.particles().size(); ++i)
+    material += !simulation.particles().is_wall(i);
+  return std::min(volume / std::pow(s.domain.spacing, 3), 0.5 * static_cast<double>(material));
+}
+
+void print_run_time(const Simulation& simulation, double step) {
+  heading("run time (a rough estimate)");
+  const Scene& s = simulation.scene();
+  const double fixed = s.time.integrator.fixed_step;
+  double dt = step > 0 ? std::min(step, s.time.integrator.max_step) : s.time.integrator.max_step;
+  if (fixed > 0) dt = fixed;
+  double count = expected_liquid(simulation);
+  if (count == 0) count = static_cast<double>(simulation.active_count());
+  if (!(dt > 0 && dt < s.time.end)) {
+    line("unknown", "no limit sets the step before the run: error control does");
+    return;
+  }
+  const double steps = s.time.end / dt, seconds = steps * count * kSecondsPerParticleStep / threads();
+  line("steps", fmt::format("{:.3g} of {:.3g} s", steps, dt));
+  line("particles that cost", fmt::format("{:.3g}", count));
+  line("cost [core-us per particle and step]",
+       fmt::format("{:g} (stated, not measured here)", 1e6 * kSecondsPerParticleStep));
+  line("estimate", fmt::format("about {:.2g} {} on {} thread{}; within a factor of 3",
+                               seconds < 120 ? seconds : seconds / 60, seconds < 120 ? "s" : "min", threads(),
+                               threads() == 1 ? "" : "s"));
+}
+
+}  // namespace
+
+int check(const std::filesystem::path& case_file, const std::vector<std::string>& set) {
+  const Scene scene = scene::read_case(case_file, set);
+  Simulation simulation(scene);
+  heading("resolved case");
+  fmt::print("{}", scene::write_case(scene));
+  heading("model");
+  line("row of Table 1", scene.model);
+  std::vector<Limit> limits;
+  for (const StepLimit& l : simulation.step_limits()) limits.push_back({std::string(l.name), l.seconds});
+  print_terms(simulation);
+  print_particles(simulation);
+  print_memory(simulation);
+  double step = print_limits("step limits at t = 0 [s]", std::move(limits));
+  if (simulation.liquid_count() == 0 && scene.terms.melting) {
+    const std::string title =
+        fmt::format("step limits with a developed pool, melt at {:g} m/s [s] (estimated)", kPoolSpeed);
+    const double developed = print_limits(title.c_str(), developed_limits(scene));
+    if (developed > 0) step = step > 0 ? std::min(step, developed) : developed;
+  }
+  print_derived(scene);
+  print_laser(scene);
+  print_run_time(simulation, step);
+  return kExitOk;
+}
+
+}  // namespace meltray::app
