@@ -21,7 +21,10 @@ using scene::Simulation;
 constexpr double kPoolSpeed = 5;
 /// Liquid particles of a developed pool: its width and length in focal diameters, its depth per power.
 constexpr double kPoolWidth = 2, kPoolLength = 4, kDepthPerPower = 1e-6;  // the last in [m/W]
-/// Wall time of one step per liquid particle and core [s], of a weld on two cores. A rough figure.
+/// Core time of one step: per liquid particle, and per step of a scene with a laser whatever its melt
+/// (tracing, selection, lists). Rough figures of a weld on two cores, where the mean step was half the
+/// shortest limit, since spatter and error control shorten it.
+constexpr double kSecondsPerLaserStep = 1.5e-2, kShareOfLimit = 0.5;
 constexpr double kSecondsPerParticleStep = 4e-6;
 
 void heading(const char* text) {
@@ -205,6 +208,7 @@ void print_run_time(const Simulation& simulation, double step) {
   const Scene& s = simulation.scene();
   const double fixed = s.time.integrator.fixed_step;
   double dt = step > 0 ? std::min(step, s.time.integrator.max_step) : s.time.integrator.max_step;
+  if (s.laser) dt *= kShareOfLimit;
   if (fixed > 0) dt = fixed;
   double count = expected_liquid(simulation);
   if (count == 0) count = static_cast<double>(simulation.active_count());
@@ -212,12 +216,15 @@ void print_run_time(const Simulation& simulation, double step) {
     line("unknown", "no limit sets the step before the run: error control does");
     return;
   }
-  const double steps = s.time.end / dt, seconds = steps * count * kSecondsPerParticleStep / threads();
+  const double steps = s.time.end / dt,
+               seconds = steps * (count * kSecondsPerParticleStep + (s.laser ? kSecondsPerLaserStep : 0.0)) /
+                         threads();
   line("steps", fmt::format("{:.3g} of {:.3g} s", steps, dt));
   line("particles that cost", fmt::format("{:.3g}", count));
-  line("cost [core-us per particle and step]",
-       fmt::format("{:g} (stated, not measured here)", 1e6 * kSecondsPerParticleStep));
-  line("estimate", fmt::format("about {:.2g} {} on {} thread{}; within a factor of 3",
+  line("stated cost of a step",
+       fmt::format("{:g} core-us per particle{}; not measured on this machine", 1e6 * kSecondsPerParticleStep,
+                   s.laser ? fmt::format(" + {:g} core-ms", 1e3 * kSecondsPerLaserStep) : ""));
+  line("estimate", fmt::format("about {:.2g} {} on {} thread{}; good to an order of magnitude",
                                seconds < 120 ? seconds : seconds / 60, seconds < 120 ? "s" : "min", threads(),
                                threads() == 1 ? "" : "s"));
 }

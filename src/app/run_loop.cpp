@@ -45,6 +45,7 @@ void RunState::archive(Archive& a) {
   since_row.archive(a);
   a.value("run/wall_seconds", wall_seconds);
   a.value("run/resumed", resumed);
+  a.value("run/active", active);
   a.value("run/forked_from", forked_from);
   a.value("run/case_fingerprint", case_fingerprint);
 }
@@ -157,6 +158,7 @@ void RunLoop::advance() {
   const double checkpoint = next_multiple(t, output.checkpoint_interval);
   const auto step = simulation_.step(std::min({options_.end, row, snapshot, checkpoint}));
   state_.since_row.add(step);
+  state_.active = static_cast<std::int64_t>(simulation_.active_count());
   progress_.step(step, simulation_.counters().steps, simulation_.liquid_count());
   if (reached(snapshot)) write_snapshot();
   if (reached(row)) write_row();
@@ -269,6 +271,7 @@ void RunLoop::write_summary(const std::string& outcome, int exit_code, const std
   r.wall_seconds = wall_before_ + r.session_wall;
   r.session_start = start_time_;
   r.resumed = static_cast<int>(state_.resumed);
+  r.active = state_.active;
   r.forked_from = state_.forked_from;
   r.checkpoint_time = checkpoint_time_;
   r.threads = threads();

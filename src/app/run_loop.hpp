@@ -21,6 +21,7 @@ struct RunState {
   observe::StepsSinceRow since_row;
   double wall_seconds = 0;  ///< up to this point, over all sessions
   std::int64_t resumed = 0;
+  std::int64_t active = 0;  ///< particles that took part in the last step
   std::string forked_from;
   std::string case_fingerprint;  ///< of everything in case.toml but the end time
 

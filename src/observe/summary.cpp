@@ -117,7 +117,7 @@ std::string summary_text(const RunRecord& r, scene::Simulation* simulation) {
   const double simulated = simulation->time() - r.session_start;
   j["time_s"] = simulation->time();
   j["wall_seconds_per_simulated_ms"] = simulated > 0 ? Json(r.session_wall / (1e3 * simulated)) : Json();
-  j["particles"] = {{"liquid", simulation->liquid_count()}, {"active", simulation->active_count()}};
+  j["particles"] = {{"liquid", simulation->liquid_count()}, {"active", r.active}};
   j["mean_liquid_particles"] =
       c.steps > 0 ? static_cast<double>(c.liquid_particle_steps) / static_cast<double>(c.steps) : 0.0;
   j["steps"] = c.steps;

@@ -70,11 +70,6 @@ void check_terms(const Scene& scene, const Document& document) {
       scene.flow.interface_viscosity_solid == 0)
     inert(document, "terms.interface_viscosity", "both its coefficients are 0",
           "flow.interface_viscosity_free or flow.interface_viscosity_solid > 0");
-  if (t.pressure && scene.flow.projection == Projection::stage && scene.flow.drift_time == 0 &&
-      scene.flow.reference_speed == 0)
-    refuse(document.place("splitting.projection"), "splitting.projection",
-           "\"stage\" without a time for the drift of density",
-           "flow.drift_time_s or flow.reference_speed_m_s > 0");
   for (int f = 0; f < 6; ++f)
     if (scene.domain.dimension == 3 || f / 2 != 1) check_thermal(scene, document, f);
 }

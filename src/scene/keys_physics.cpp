@@ -39,20 +39,6 @@ std::vector<Key> term_keys() {
 std::vector<Key> flow_keys() {
   const Need pressure = term("pressure", &Terms::pressure);
   const Need interface = term("interface_viscosity", &Terms::interface_viscosity);
-  const Need by_step = {"splitting.projection = \"step\"", {"splitting.projection"}, [](const Scene& s, int) {
-                          return s.flow.projection == Projection::step;
-                        }};
-  const Need by_stage = {"splitting.projection = \"stage\"",
-                         {"splitting.projection"},
-                         [](const Scene& s, int) { return s.flow.projection == Projection::stage; }};
-  const Need uses_speed = {
-      "terms.interface_viscosity = true, or splitting.projection = \"stage\" without flow.drift_time_s",
-      {"terms.interface_viscosity", "splitting.projection", "flow.drift_time_s"},
-      [](const Scene& s, int) {
-        const bool drift =
-            s.terms.pressure && s.flow.projection == Projection::stage && s.flow.drift_time == 0;
-        return s.terms.interface_viscosity || drift;
-      }};
   return {
       number("flow.pressure_tolerance", "", above_to(0, 0.1), MELTRAY_AT(flow.pressure_tolerance),
              "Relative residual at which the pressure solve ends.")
@@ -60,22 +46,20 @@ std::vector<Key> flow_keys() {
       integer("flow.pressure_max_iterations", between(1, 1000000), MELTRAY_AT(flow.pressure_max_iterations),
               "Largest number of iterations of a pressure solve.")
           .only_if(pressure),
-      number("flow.drift_time_ratio", "steps", at_least(1), MELTRAY_AT(flow.drift_time_ratio),
-             "Time in which the projection takes back errors of density, in steps.")
-          .only_if(pressure)
-          .only_if(by_step),
       number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),
-             "The same as a fixed time, for the projection in every stage; 0: 0.2 spacing_m / "
-             "reference_speed_m_s.")
-          .only_if(pressure)
-          .only_if(by_stage),
+             "Time in which the projection takes back errors of density; 0: five spacings at the speed that "
+             "the scene implies.")
+          .only_if(pressure),
       number("flow.shifting", "", between(0, 100), MELTRAY_AT(flow.shifting),
              "Coefficient of the velocity that keeps particles evenly spread; 0: off.")
           .only_if(pressure),
+      number("flow.shifting_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.shifting_speed),
+             "Least speed that shifting reckons with, so that it acts at stagnation points.")
+          .only_if({"flow.shifting > 0", {"flow.shifting"}, [](const Scene& s, int) { return s.flow.shifting > 0; }}),
       number(
           "flow.reference_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.reference_speed),
           "Speed that scales the interface viscosity: the sound speed a weakly compressible model would use.")
-          .only_if(uses_speed),
+          .only_if(interface),
       number("flow.interface_viscosity_free", "", at_least(0), MELTRAY_AT(flow.interface_viscosity_free),
              "Coefficient alpha_LG of the interface viscosity at the free surface.")
           .only_if(interface),

@@ -24,11 +24,13 @@ terms::RecoilOnset onset(RecoilOnset o) {
   return terms::RecoilOnset::smooth;
 }
 
-/// The largest of the speeds that a scene names or implies [m/s]; the time constant of the `stage` projection's
-/// drift term rests on it.
+/// Time constants of the projections' corrections, in times that the flow takes to cross a spacing.
+constexpr double kDriftCrossings = 5, kDivergenceCrossings = 0.2;
+
+/// The largest of the speeds that a scene names or implies [m/s]; 1 m/s where there is none.
 double expected_speed(const Scene& scene) {
   const Domain& domain = scene.domain;
-  double speed = std::max(scene.flow.reference_speed, std::abs(domain.velocity_scale));
+  double speed = std::abs(domain.velocity_scale);
   for (const Body& body : domain.bodies) speed = std::max(speed, body.velocity.norm());
   for (const Face& face : domain.faces) speed = std::max(speed, face.velocity.norm());
   const double rho = scene.material.density, height = (domain.max - domain.min)[domain.dimension - 1];
@@ -54,11 +56,13 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient, scene.surface.recoil_pressure,
              scene.surface.recoil_ramp};
   buoyancy_ = {scene.terms.gravity, scene.terms.buoyancy, scene.domain.gravity};
-  shifting_.coefficient = flow.shifting;
+  shifting_ = {flow.shifting, flow.shifting_speed};
   projection_options_ = {scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf
                                                                   : terms::SurfaceEntry::pressure,
                          flow.pressure_tolerance, flow.pressure_max_iterations};
-  drift_time = flow.drift_time > 0 ? flow.drift_time : 0.2 * constants.spacing / expected_speed(scene);
+  const double crossing = constants.spacing / expected_speed(scene);
+  drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
+  divergence_time = kDivergenceCrossings * crossing;
   partitions = {initially_implicit(scene.time.conduction), initially_implicit(scene.time.viscosity),
                 initially_implicit(scene.time.interface_viscosity), initially_implicit(scene.time.evaporation)};
   stage.constants = &constants_;

@@ -61,7 +61,8 @@ class Model : public OdeProblem {
   std::vector<double> laser_power;   ///< per patch particle [W]; empty without a laser
   Partitions partitions;
   double largest_acceleration = 0;   ///< of the last projection [m/s^2]
-  double drift_time = 0;             ///< of the `stage` projection [s]
+  double drift_time = 0;        ///< in which errors of density are taken back [s]
+  double divergence_time = 0;   ///< in which the `stage` projection takes back errors of divergence [s]
   Counters* counters = nullptr;
   Vec3 pressure_impulse = Vec3::Zero();  ///< of the last step's projection [kg m/s]
   terms::Projection projection;

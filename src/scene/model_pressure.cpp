@@ -27,11 +27,10 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
   largest_acceleration = 0;
   pressure_impulse = Vec3::Zero();
   if (projection.rows() == 0) return;
-  // Eq. (6): div(grad p / rho) = div v* / dt, less the divergence that undoes a density error over drift_time_ratio
-  // steps.
+  // Eq. (6): div(grad p / rho) = div v* / dt, less the divergence that undoes a density error over drift_time.
   projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
   projection.compression(stage, other_);
-  const double relax = 1 / (scene_.flow.drift_time_ratio * dt);
+  const double relax = 1 / std::max(drift_time, 2 * dt);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] = (source_[r] - relax * other_[r]) / dt;
   count_solve(projection.solve(stage, source_, projection_options_), t);
 
@@ -71,9 +70,9 @@ void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) 
   projection.divergence_rate(stage, v, other_);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r];
   projection.divergence(stage, v, other_);
-  for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r] / drift_time;
+  for (Index r = 0; r < projection.rows(); ++r) source_[r] += other_[r] / divergence_time;
   projection.compression(stage, other_);
-  const double relax = 1 / (drift_time * drift_time * scene_.flow.drift_time_ratio);
+  const double relax = 1 / (divergence_time * drift_time);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] -= relax * other_[r];
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
   const Vec3 before = total_force();

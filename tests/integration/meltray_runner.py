@@ -15,6 +15,8 @@ import numpy
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 CASES = pathlib.Path(__file__).resolve().parent / "cases"
 PROGRAM = None  # set by main()
+# Threads that wait sleep: the tests share the machine, and a spinning thread would take the core of the one it waits for.
+ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive"}
 
 # What may differ between two runs of the same case: how long they took, in how many sessions, on how many threads.
 SESSION_KEYS = {"wall_seconds", "session_wall_seconds", "session_start_s", "resumed", "forked_from", "peak_memory_bytes",
@@ -34,13 +36,13 @@ def main():
 def meltray(*arguments, cwd=None, timeout=300):
     """The finished process; its output is text."""
     return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, check=False, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                          env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def start(*arguments, cwd=None):
     """The program in the background; its output is dropped."""
-    return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cwd, stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL)
+    return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cwd, env=ENVIRONMENT,
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def run(case, out, *options):
@@ -126,10 +128,15 @@ def differences(one, other):
 
 
 class Scratch(unittest.TestCase):
-    """A test case with a folder of its own, removed when the test passed or failed."""
+    """Tests with a folder of their own, and one for what they share; both are removed in the end."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="meltray-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.shared, ignore_errors=True)
 
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="meltray-test-", dir=os.environ.get("TMPDIR")))
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="test-", dir=self.shared))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def write(self, name, text):

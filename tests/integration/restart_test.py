@@ -18,29 +18,29 @@ SEED = int(os.environ.get("MELTRAY_SEED", "1"))
 
 
 def wait_for_write(folder, process, seconds):
-    """Waits until a file is being written (its .part exists) after `seconds`, or the process has ended."""
-    began = time.monotonic()
+    """Waits `seconds`, then until a file is being written (its .part exists); False when the process has ended."""
+    time.sleep(seconds)
     while process.poll() is None:
-        if time.monotonic() - began > seconds and any(
-                entry.name.endswith(".part") for f in (folder, folder / "particles") if f.is_dir()
-                for entry in os.scandir(f)):
+        names = [name for f in (folder, folder / "particles") if f.is_dir() for name in os.listdir(f)]
+        if any(name.endswith(".part") for name in names):
             return True
     return False
 
 
 class Restart(Scratch):
-    def setUp(self):
-        super().setUp()
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
         began = time.monotonic()
-        self.reference = run(WELD, self.folder / "reference", "--threads", "1")
-        self.seconds = time.monotonic() - began
+        cls.reference = run(WELD, cls.shared / "reference", "--threads", "1")
+        cls.seconds = time.monotonic() - began
 
     def finish(self, folder, *options):
         done = meltray("resume", folder, "--quiet", *options)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_reference_does_what_it_is_for(self):
-        """The scene melts, boils, traces the beam, loses spatter and rejects a step."""
+        """The scene melts, boils, traces the beam and rejects steps."""
         result = summary(self.reference)
         self.assertEqual(result["outcome"], "finished")
         self.assertGreater(result["particles"]["liquid"], 20)
@@ -52,6 +52,14 @@ class Restart(Scratch):
     def test_two_threads(self):
         two = run(WELD, self.folder / "two", "--threads", "2")
         self.assert_same_results(self.reference, two, "1 and 2 threads")
+
+    def test_projection_in_every_stage(self):
+        """The other projection: stopped between checkpoints and resumed on two threads."""
+        option = ("--set", "splitting.projection=stage")
+        one = run(WELD, self.folder / "one", "--threads", "1", *option)
+        two = run(WELD, self.folder / "two", "--threads", "2", "--until", "1.27e-4", *option)
+        self.finish(two, "--threads", "2")
+        self.assert_same_results(one, two, "projection in every stage")
 
     def test_kill(self):
         """kill -9 again and again, every second time in the middle of a write; threads change on the way."""
@@ -96,6 +104,17 @@ class Restart(Scratch):
                 self.assertEqual(result["checkpoint_time_s"], result["time_s"])
                 self.finish(folder)
                 self.assert_same_results(self.reference, folder, outcome)
+
+    def test_signal_before_the_first_scheduled_checkpoint(self):
+        folder = self.folder / "early"
+        process = start("run", WELD, "--out", folder, "--quiet", "--threads", "1")
+        while not (folder / "summary.json").exists() and process.poll() is None:
+            time.sleep(0.001)
+        process.terminate()
+        self.assertEqual(process.wait(), 143)
+        self.assertLess(summary(folder)["time_s"], 2e-5)
+        self.finish(folder)
+        self.assert_same_results(self.reference, folder, "early signal")
 
     def test_stop_at_a_time_between_two_checkpoints(self):
         folder = run(WELD, self.folder / "until", "--until", "1.27e-4")

@@ -49,11 +49,26 @@ class Budgets(Scratch):
         self.assertEqual(laser["dropped_rays"], 0)
 
     def test_lively_weld(self):
-        """Melt leaves through the top and through the cut faces; steps are rejected."""
-        rows, result = self.go()
-        self.assertGreater(result["ejected"], 0)
+        """Steps are rejected; a drop leaves through the top and takes its mass, heat and momentum along."""
+        case = self.write("drop.toml", f"""
+include = "{WELD}"
+[[bodies]]
+shape = "box"
+min_m = [0.0, -0.3e-3, -0.5e-3]
+max_m = [0.6e-3, 0.3e-3, 0.0]
+[[bodies]]
+shape = "ball"
+center_m = [0.45e-3, 0.0, 0.2e-3]
+radii_m = [0.6e-4, 0.6e-4, 0.6e-4]
+temperature_k = 2000.0
+velocity_m_s = [0.0, 0.0, 10.0]
+""")
+        rows, result = self.go("laser.power_w=5000", case=case)
+        self.assertGreaterEqual(result["ejected"], 8)
+        self.assertGreater(rows["ejected_mass_kg"][-1], 0)
+        self.assertGreater(result["rejected_steps"], 0)
         self.assert_closed(rows, result)
-        self.assertAlmostEqual(result["budgets"]["laser"]["in_j"], 3000 * 2e-4, delta=1e-12)
+        self.assertAlmostEqual(result["budgets"]["laser"]["in_j"], 5000 * 2e-4, delta=1e-12)
 
     def test_calm_weld(self):
         rows, result = self.go(*TAME, "laser.power_w=1500")

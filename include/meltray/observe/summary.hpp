@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -21,6 +22,7 @@ struct RunRecord {
   double session_start = 0;     ///< simulated time at which this process began [s]
   double session_wall = 0;      ///< wall seconds of this process
   int resumed = 0;              ///< number of resumptions
+  std::int64_t active = 0;      ///< particles that took part in the last step, of whatever session
   std::string forked_from;      ///< folder and time, empty for an ordinary run
   double checkpoint_time = -1;  ///< [s]; negative: none
   int threads = 1;

@@ -27,12 +27,14 @@ double now() {
 
 }  // namespace
 
-Row relative_row(std::string quantity, double value, double reference, double tolerance, const Measured& how) {
+Row relative_row(std::string quantity, double value, double reference, double tolerance,
+                 const Measured& how) {
   const double error = std::abs(value - reference) / std::abs(reference);
   return row(std::move(quantity), value, reference, error, tolerance, how);
 }
 
-Row absolute_row(std::string quantity, double value, double reference, double tolerance, const Measured& how) {
+Row absolute_row(std::string quantity, double value, double reference, double tolerance,
+                 const Measured& how) {
   return row(std::move(quantity), value, reference, std::abs(value - reference), tolerance, how);
 }
 

@@ -10,17 +10,17 @@ namespace meltray::app {
 /// One quantity of a validation case at one resolution, against its reference. SI units; the quantity names
 /// the unit where it has one.
 struct Row {
-  std::string id;          ///< of the case
+  std::string id;  ///< of the case
   std::string quantity;
   std::string resolution;  ///< empty where nothing is discretised
   double value = 0, reference = 0;
-  double error = 0;                  ///< relative or absolute, as the case says
-  double tolerance = 0;              ///< pass line of the error
-  std::optional<double> goal;        ///< stricter than the pass line
-  std::optional<double> order;       ///< observed, against the next coarser resolution
-  double seconds = 0;                ///< of the run behind the row
-  std::string source;                ///< of the reference
-  bool judged = true;                ///< false: reported only (a coarse resolution, a broken run's rest)
+  double error = 0;             ///< relative or absolute, as the case says
+  double tolerance = 0;         ///< pass line of the error
+  std::optional<double> goal;   ///< stricter than the pass line
+  std::optional<double> order;  ///< observed, against the next coarser resolution
+  double seconds = 0;           ///< of the run behind the row
+  std::string source;           ///< of the reference
+  bool judged = true;           ///< false: reported only (a coarse resolution, a broken run's rest)
 
   bool passed() const { return !judged || error <= tolerance; }  // false for NaN
 };

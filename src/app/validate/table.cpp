@@ -60,7 +60,8 @@ double Table::number(std::size_t row, const std::string& column) const {
   const auto end = cell.data() + cell.size();
   const auto result = std::from_chars(cell.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end)
-    throw UsageError(fmt::format("{}: found '{}' in column {}; allowed a number", file_.string(), cell, column));
+    throw UsageError(
+        fmt::format("{}: found '{}' in column {}; allowed a number", file_.string(), cell, column));
   return value;
 }
 

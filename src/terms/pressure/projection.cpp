@@ -5,6 +5,15 @@
 
 namespace meltray::terms {
 
+namespace {
+
+/// Share of a flat face's ghost weight that ties a component to the free surface.
+constexpr double kAnchor = 0.3;
+/// Density excess of a surface particle that disorder explains and that is not corrected.
+constexpr double kTolerated = 0.03;
+
+}  // namespace
+
 void Projection::assemble(const Stage& s) {
   const Index n = s.size();
   const auto& pairs = *s.pairs;
@@ -52,7 +61,19 @@ void Projection::assemble(const Stage& s) {
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });
-  floating_ = solve::floating_components(matrix_, ghost_, group_);
+  // A component hangs on the free surface only if some row has a fair share of a flat face's ghost weight; the
+  // mean of the source would else leave through one weak row. Without that, the component is a closed pocket.
+  anchor_.resize(rows);
+  for (Index r = 0; r < rows; ++r) {
+    const double fair = kAnchor * (1 - lattice.face_diagonal) * full * s.volume[particle_of_[r]];
+    anchor_[r] = ghost_[r] >= fair ? 1.0 : 0.0;
+  }
+  floating_ = solve::floating_components(matrix_, anchor_, group_);
+  for (Index r = 0; r < rows; ++r)
+    if (group_[r] > 0) {
+      matrix_.diagonal[r] -= ghost_[r];
+      ghost_[r] = 0;
+    }
 }
 
 void Projection::divergence(const Stage& s, const ConstField& u, std::vector<double>& out) const {
@@ -111,7 +132,7 @@ void Projection::compression(const Stage& s, std::vector<double>& out) const {
     // than that is shape, not density.
     const double excess = s.fill[i] + open * s.exposure[i] - 1;
     const bool inside = s.surface[i] == 0 && s.fill[i] > 0.97;
-    out[r] = s.patch->wall[i] ? 0.0 : inside ? s.fill[i] - 1 : std::max(0.0, excess);
+    out[r] = s.patch->wall[i] ? 0.0 : inside ? s.fill[i] - 1 : std::max(0.0, excess - kTolerated);
   });
 }
 

@@ -51,12 +51,14 @@ TEST_CASE("selecting everything takes every particle once, sorted by cell") {
     for (Index i = patch.cell_start[c]; i < patch.cell_start[c + 1]; ++i) {
       const Index g = patch.global[i];
       wrong += b.grid.cell(view(std::as_const(patch.x)), i) != c || patch.h[i] != b.p.h[g] ||
-               patch.wall[i] != b.p.wall[g] || patch.liquid[i] != b.p.phase[g] || patch.x[2][i] != b.p.x[2][g];
+               patch.wall[i] != b.p.wall[g] || patch.liquid[i] != b.p.phase[g] ||
+               patch.x[2][i] != b.p.x[2][g];
     }
   CHECK(wrong == 0);
 }
 
-TEST_CASE("near the melt: every particle within two cell widths of liquid or of `also` is there, far ones not") {
+TEST_CASE(
+    "near the melt: every particle within two cell widths of liquid or of `also` is there, far ones not") {
   Block b;
   b.melt(Vec3(0.1, 0.1, 1), 0.12);
   PatchSelector selector(b.grid, b.p);
@@ -131,7 +133,8 @@ TEST_CASE("gather and for_resting_near find what a search by hand finds") {
   std::vector<Index> found, expected;
   selector.gather(b.p, min, max, found);
   for (Index i = 0; i < static_cast<Index>(b.p.size()); ++i)
-    if ((b.at(i).array() >= min.array()).all() && (b.at(i).array() <= max.array()).all()) expected.push_back(i);
+    if ((b.at(i).array() >= min.array()).all() && (b.at(i).array() <= max.array()).all())
+      expected.push_back(i);
   std::sort(found.begin(), found.end());
   CHECK(found == expected);
 

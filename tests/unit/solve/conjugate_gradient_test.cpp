@@ -16,8 +16,8 @@ using namespace meltray::solve;
 
 namespace {
 
-/// Laplacian of random springs on a grid of n x n nodes; `anchor` is added to the diagonal of the first row of
-/// nodes. Springs between the columns left and right of `cut` are left out.
+/// Laplacian of random springs on a grid of n x n nodes; `anchor` is added to the diagonal of the first row
+/// of nodes. Springs between the columns left and right of `cut` are left out.
 SymmetricMatrix network(int n, double anchor, int cut = -1) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> weight(0.1, 10);

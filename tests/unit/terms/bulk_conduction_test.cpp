@@ -41,7 +41,8 @@ struct HotBlock : StageSetup {
   void full_steps(double dt, int steps) {
     for (int k = 0; k < steps; ++k) {
       reload(particles, patch);
-      for (Index i = 0; i < patch.size(); ++i) stage.temperature[i] = constants.material.temperature(patch.h[i]);
+      for (Index i = 0; i < patch.size(); ++i)
+        stage.temperature[i] = constants.material.temperature(patch.h[i]);
       if (!op.assembled()) op.assemble(stage);  // constant conductivity, nothing moves
       rate.assign(patch.size(), 0.0);
       op.add_heating(stage, rate.data());
@@ -74,7 +75,8 @@ constexpr int kExchanges = 30, kFine = 5;
 
 TEST_CASE("bulk conduction: the history is that of the full operator and energy is exact") {
   HotBlock full, bulk;
-  const double before = bulk.energy(), excess = before - 300.0 * 700 * bulk.cell_mass() * bulk.particles.size();
+  const double before = bulk.energy(),
+               excess = before - 300.0 * 700 * bulk.cell_mass() * bulk.particles.size();
   full.full_steps(kInterval / kFine, kExchanges * kFine);
   terms::BulkConduction op;
   const std::vector<std::uint8_t> in_state(bulk.particles.size(), 0);

@@ -205,8 +205,8 @@ TEST_CASE("conduction: the implicit solve is that of the dense matrix, walls and
   op.assemble(s.stage);
   const auto n = static_cast<Index>(s.stage.heated.size());
 
-  // J by differences of add_heating with coefficients and walls assembled anew. The conductivity is constant and
-  // T(h) piecewise linear, so a difference within one branch is exact.
+  // J by differences of add_heating with coefficients and walls assembled anew. The conductivity is constant
+  // and T(h) piecewise linear, so a difference within one branch is exact.
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
   const auto base = heating(s, op);
   std::vector<double> local(s.patch.size());
@@ -242,7 +242,8 @@ TEST_CASE("conduction: the implicit solve is that of the dense matrix, walls and
   // Gershgorin: between the largest diagonal and twice it lies the fastest mode of -J without losses.
   Eigen::MatrixXd j = (Eigen::MatrixXd::Identity(n, n) - system) / gamma;
   for (Index c = 0; c < n; ++c)
-    j(c, c) -= local[s.stage.heated[c]] * metal.temperature_slope(s.patch.h[s.stage.heated[c]]) / s.patch.mass[s.stage.heated[c]];
+    j(c, c) -= local[s.stage.heated[c]] * metal.temperature_slope(s.patch.h[s.stage.heated[c]]) /
+               s.patch.mass[s.stage.heated[c]];
   const double fastest = -j.eigenvalues().real().minCoeff();
   CHECK(fastest <= 2 * op.rate(s.stage) * (1 + 1e-6));
   CHECK(fastest >= op.rate(s.stage) * (1 - 1e-6));

@@ -45,9 +45,9 @@ TEST_CASE("interface viscosity: rigid motion is free of force") {
 }
 
 TEST_CASE("interface viscosity: acts like the kinematic viscosity alpha h c / 8 in 2-D") {
-  // Monaghan 2005, sect. 4.2: nu = alpha h c / 8 in 2-D, here at T below melting, where the solid part is full
-  // everywhere. A lattice is stiffer along its diagonals than along its axes: the mean of the two shear waves at
-  // 0 and 45 degrees is the isotropic value, less what 0.01 h^2 in the denominator takes (2 to 3 %).
+  // Monaghan 2005, sect. 4.2: nu = alpha h c / 8 in 2-D, here at T below melting, where the solid part is
+  // full everywhere. A lattice is stiffer along its diagonals than along its axes: the mean of the two shear
+  // waves at 0 and 45 degrees is the isotropic value, less what 0.01 h^2 in the denominator takes (2 to 3 %).
   StageSetup s(2, kDx);
   const Vec3 max(40 * kDx, 40 * kDx, 0.0);
   s.fill(Vec3::Zero(), max, 1800);
@@ -93,7 +93,8 @@ TEST_CASE("interface viscosity: only where the surface or melting is, scaled by 
   CHECK(solid_part(1860) == Approx(0).margin(1e-12 * std::abs(full)));
 }
 
-TEST_CASE("interface viscosity: the implicit solve is that of the dense matrix, also with physical viscosity") {
+TEST_CASE(
+    "interface viscosity: the implicit solve is that of the dense matrix, also with physical viscosity") {
   StageSetup s(3, kDx);
   test::fill_jittered_block(s, 5);
   s.set_temperature([](const Vec3& x) { return 1820 + 2e5 * x[0]; });

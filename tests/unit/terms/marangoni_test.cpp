@@ -19,7 +19,8 @@ Material metal() {
 }
 
 /// Force of the middle of a layer (free above, dummies below) per area of its face, along x and up.
-std::array<double, 2> stress(int dim, double jitter, double t0, double (*temperature)(const Vec3&) = nullptr) {
+std::array<double, 2> stress(int dim, double jitter, double t0,
+                             double (*temperature)(const Vec3&) = nullptr) {
   StageSetup s(dim, kDx, metal());
   const int up = dim - 1;
   Vec3 max = Vec3::Constant(8 * kDx);

@@ -17,7 +17,9 @@ namespace {
 constexpr double kDx = 5e-5, kRho = 7000;
 constexpr SurfaceEntry kEntries[] = {SurfaceEntry::csf, SurfaceEntry::pressure};
 
-ProjectionOptions exact(SurfaceEntry entry = SurfaceEntry::csf) { return {entry, 1e-11, 5000}; }
+ProjectionOptions exact(SurfaceEntry entry = SurfaceEntry::csf) {
+  return {entry, 1e-11, 5000};
+}
 
 Components pressure_acceleration(const StageSetup& s, const Projection& p, SurfaceEntry entry) {
   Components a = s.zeros();
@@ -31,7 +33,8 @@ double rms(const std::vector<double>& v) {
   return std::sqrt(sum / v.size());
 }
 
-/// Sum over liquid rows only, weighted alike: rows are liquid particles and their solid neighbours in patch order.
+/// Sum over liquid rows only, weighted alike: rows are liquid particles and their solid neighbours in patch
+/// order.
 double rms_liquid(const StageSetup& s, const std::vector<double>& v) {
   double sum = 0;
   std::size_t row = 0, n = 0;
@@ -102,7 +105,8 @@ TEST_CASE("projection: a uniform surface pressure is an exact rest state of both
 
 namespace {
 
-/// Solves for the pressure of liquid under gravity; the largest error of rho g depth over rho g times the depth.
+/// Solves for the pressure of liquid under gravity; the largest error of rho g depth over rho g times the
+/// depth.
 double hydrostatic_error(StageSetup& s, SurfaceEntry entry, double depth, Components& acceleration) {
   const double g = 9.81;
   Components force = s.zeros();
@@ -134,13 +138,14 @@ TEST_CASE("projection: hydrostatic pressure in a wide basin is rho g depth") {
     CHECK(hydrostatic_error(s, entry, max[1], a) < 0.02);
     int wrong = 0;
     for (Index i : s.stage.moving)
-      if (s.patch.x[1][i] > 3 * kDx && s.patch.x[1][i] < 36 * kDx) wrong += std::abs(a[1][i] / 9.81 - 1) > 0.03;
+      if (s.patch.x[1][i] > 3 * kDx && s.patch.x[1][i] < 36 * kDx)
+        wrong += std::abs(a[1][i] / 9.81 - 1) > 0.03;
     CHECK(wrong == 0);
   }
 }
 
-// Measured: 10 % of the full pressure at the bottom corners, 5 % low in the middle: rows of the side walls carry no
-// force but conduct pressure upwards among themselves.
+// Measured: 10 % of the full pressure at the bottom corners, 5 % low in the middle: rows of the side walls
+// carry no force but conduct pressure upwards among themselves.
 TEST_CASE("projection: hydrostatic pressure in a narrow tank is rho g depth", "[!shouldfail]") {
   for (SurfaceEntry entry : kEntries) {
     StageSetup s(2, kDx);
@@ -158,7 +163,8 @@ TEST_CASE("projection: a step removes most of the divergence") {
     // Compression towards the middle of the tank, smooth on the scale of the support, zero at the walls.
     const double k = M_PI / (30 * kDx), m = M_PI / (24 * kDx);
     s.set_velocity([&](const Vec3& x) -> Vec3 {
-      return Vec3(std::sin(2 * k * x[0]) * std::sin(m * x[1]), 0.5 * std::sin(k * x[0]) * std::sin(2 * m * x[1]), 0);
+      return Vec3(std::sin(2 * k * x[0]) * std::sin(m * x[1]),
+                  0.5 * std::sin(k * x[0]) * std::sin(2 * m * x[1]), 0);
     });
     for (Index i = 0; i < s.patch.size(); ++i)
       if (s.patch.wall[i]) s.patch.v[0][i] = s.patch.v[1][i] = 0;
@@ -182,8 +188,8 @@ TEST_CASE("projection: a step removes most of the divergence") {
 
 namespace {
 
-/// Largest error of the pressure of a Taylor-Green vortex over rho/2, from the source of the `stage` projection.
-/// v = (sin kx cos ky, -cos kx sin ky): p = rho/4 (cos 2kx + cos 2ky).
+/// Largest error of the pressure of a Taylor-Green vortex over rho/2, from the source of the `stage`
+/// projection. v = (sin kx cos ky, -cos kx sin ky): p = rho/4 (cos 2kx + cos 2ky).
 double taylor_green_error(double smoothing_ratio) {
   StageSetup s(2, kDx);
   s.constants.smoothing = smoothing_ratio * kDx;
@@ -220,9 +226,11 @@ TEST_CASE("projection: the stage source of a Taylor-Green vortex gives its press
   CHECK(taylor_green_error(2.0) < 0.01);
 }
 
-// Measured: 13 %, amplitude 1.106. The fourth moments of F'/r on a lattice at h = 1.3 dx are 3.14 and 0.98 instead
-// of 3 and 1, and the source is a difference of them: strain along the lattice counts 22 % too much.
-TEST_CASE("projection: the same at h = 1.3 dx", "[!shouldfail]") { CHECK(taylor_green_error(1.3) < 0.03); }
+// Measured: 13 %, amplitude 1.106. The fourth moments of F'/r on a lattice at h = 1.3 dx are 3.14 and 0.98
+// instead of 3 and 1, and the source is a difference of them: strain along the lattice counts 22 % too much.
+TEST_CASE("projection: the same at h = 1.3 dx", "[!shouldfail]") {
+  CHECK(taylor_green_error(1.3) < 0.03);
+}
 
 TEST_CASE("projection: the rate of the divergence is its derivative along the motion") {
   for (auto kernel : {sph::KernelType::wendland_c2, sph::KernelType::cubic_spline}) {
@@ -272,7 +280,8 @@ TEST_CASE("projection: rigid rotation keeps its shape: source 2 omega^2 and a pa
     p.divergence_rate(s.stage, s.velocity(), source);
     int wrong = 0;
     for (Index i = 0; i < s.patch.size(); ++i)
-      if (s.position(i).norm() < (cells - 4) * kDx) wrong += std::abs(source[i] / (2 * omega * omega) - 1) > 1e-9;
+      if (s.position(i).norm() < (cells - 4) * kDx)
+        wrong += std::abs(source[i] / (2 * omega * omega) - 1) > 1e-9;
     CHECK(wrong == 0);
     CHECK(p.solve(s.stage, source, exact(entry)).converged);
     const double depth = 0.5 * kRho * omega * omega * r2;  // p = -rho omega^2 (R^2 - r^2)/2
@@ -286,7 +295,8 @@ TEST_CASE("projection: rigid rotation keeps its shape: source 2 omega^2 and a pa
   }
 }
 
-// Measured: 1.50 (disc of R = 20 dx) and 1.22 (ball of 10 dx) times Laplace's pressure: see surface_tension_test.
+// Measured: 1.50 (disc of R = 20 dx) and 1.22 (ball of 10 dx) times Laplace's pressure: see
+// surface_tension_test.
 TEST_CASE("projection: surface tension gives a drop its Laplace pressure", "[!shouldfail]") {
   for (SurfaceEntry entry : kEntries)
     for (int dim : {2, 3}) {
@@ -344,12 +354,14 @@ TEST_CASE("projection: a closed box has mean-zero pressure, pockets are projecte
   }
   CHECK(high > 0);
   for (double m : sum) CHECK(std::abs(m) < 1e-8 * (high - low) * p.rows());
-  // Hydrostatic between the outer walls: rho g times the height of the pocket, 8 spacings, within a wall layer.
+  // Hydrostatic between the outer walls: rho g times the height of the pocket, 8 spacings, within a wall
+  // layer.
   CHECK(high - low > kRho * 9.81 * 7 * kDx);
   CHECK(high - low < kRho * 9.81 * 13 * kDx);
 }
 
-TEST_CASE("projection: loose particles take no part, density errors near a surface count as compression only") {
+TEST_CASE(
+    "projection: loose particles take no part, density errors near a surface count as compression only") {
   StageSetup s(3, kDx);
   s.fill(Vec3::Zero(), Vec3::Constant(9 * kDx), 2000);
   s.add(Vec3(4.5 * kDx, 4.5 * kDx, 14.5 * kDx), 2000, true);

@@ -143,7 +143,8 @@ struct StageSetup {
   /// Geometry, temperatures and surface of the patch's present positions and enthalpies.
   void update() {
     pairs.refresh(patch, constants.kernel);
-    for (Index i = 0; i < patch.size(); ++i) stage.temperature[i] = constants.material.temperature(patch.h[i]);
+    for (Index i = 0; i < patch.size(); ++i)
+      stage.temperature[i] = constants.material.temperature(patch.h[i]);
     terms::compute_surface(stage);
   }
 

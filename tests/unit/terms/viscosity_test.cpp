@@ -57,7 +57,8 @@ TEST_CASE("viscosity: momentum is conserved, the operator symmetric and dissipat
   CHECK(test::largest(test::acceleration(s, op)) < 1e-9 * kNu / (kDx * kDx));
 }
 
-TEST_CASE("viscosity: Couette flow between no-slip walls is linear, at rest and as the limit of a long step") {
+TEST_CASE(
+    "viscosity: Couette flow between no-slip walls is linear, at rest and as the limit of a long step") {
   for (int dim : {2, 3}) {
     CAPTURE(dim);
     StageSetup s(dim, kDx);

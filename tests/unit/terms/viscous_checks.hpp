@@ -88,7 +88,8 @@ inline void check_solve_against_dense(const StageSetup& s, const terms::ViscousO
   CHECK(op.solve(s.stage, gamma, view(b), view(x), 1e-12, 2000) > 0);
   double worst = 0;
   for (Index r = 0; r < n; ++r)
-    for (int e = 0; e < dim; ++e) worst = std::max(worst, std::abs(x[e][s.stage.moving[r]] - exact[dim * r + e]));
+    for (int e = 0; e < dim; ++e)
+      worst = std::max(worst, std::abs(x[e][s.stage.moving[r]] - exact[dim * r + e]));
   CHECK(worst < 1e-9 * exact.cwiseAbs().maxCoeff());
   CHECK(op.solve(s.stage, gamma, view(b), view(x), 1e-12, 2000) == 0);  // from the solution
   const double fastest = -a.eigenvalues().real().minCoeff();

@@ -53,7 +53,8 @@ TEST_CASE("wetting: at the wall the normal makes the contact angle, away from it
         wrong += std::abs(n.norm() - 1) > 1e-12;
         if (x[up] > 8) wrong += !same;  // out of reach of the wall
         if (x[0] > 9 && x[up] < 6) {
-          // The liquid particle in the corner: the angle is measured through the liquid from the wall (-z) side.
+          // The liquid particle in the corner: the angle is measured through the liquid from the wall (-z)
+          // side.
           ++touched;
           const double angle = theta * M_PI / 180;
           wrong += std::abs(n[up] - std::cos(angle)) > 0.02;
@@ -68,7 +69,8 @@ TEST_CASE("wetting: at the wall the normal makes the contact angle, away from it
 TEST_CASE("wetting: a surface parallel to the wall has no triple line") {
   StageSetup s(3, kDx);
   const Vec3 max(9 * kDx, 9 * kDx, 7 * kDx);
-  s.for_lattice(Vec3::Zero(), max, [&](const Vec3& x) { s.add(x, x[2] < 5 * kDx ? 1000 : 2000, x[2] > 5 * kDx); });
+  s.for_lattice(Vec3::Zero(), max,
+                [&](const Vec3& x) { s.add(x, x[2] < 5 * kDx ? 1000 : 2000, x[2] > 5 * kDx); });
   s.prepare(Vec3::Zero(), max + Vec3(0, 0, 4 * kDx), {true, true, false});
   const auto before = s.stage.normal;
   turn(s, 30);

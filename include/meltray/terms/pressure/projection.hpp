@@ -47,7 +47,7 @@ class Projection {
  private:
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
-  std::vector<double> ghost_, rhs_, x_;
+  std::vector<double> ghost_, anchor_, rhs_, x_;
   std::vector<Index> group_;
   Index floating_ = 0;
   solve::ConjugateGradient cg_;

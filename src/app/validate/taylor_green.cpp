@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/validate/scenes.hpp"
+#include "meltray/core/constants.hpp"
+#include "meltray/core/errors.hpp"
+
+namespace meltray::app {
+namespace {
+
+/// u = -U F cos(k x) sin(k z), w = U F sin(k x) cos(k z), F = exp(-8 pi^2 t / Re), k = 2 pi;
+/// p = -(rho U^2 / 4) F^2 (cos 2kx + cos 2kz) (Taylor & Green 1937). U = L = rho = 1.
+struct Vortices {
+  double reynolds;
+  double factor(double t) const { return std::exp(-8 * constants::pi * constants::pi * t / reynolds); }
+};
+
+struct Result {
+  double velocity = 0;  ///< relative L2 error at the end
+  double pressure = 0;  ///< relative L2 error, mean over the second half of the run
+  double decay = 0;     ///< fitted between the start and the end [1/time]
+  double clumping = 0;  ///< 1 - smallest distance of two particles / spacing, at the end
+  double seconds = 0, spacing = 0;
+};
+
+double pressure_error(const Particles& p, double amplitude) {
+  const double k = 4 * constants::pi;
+  const auto n = static_cast<double>(p.size());
+  double mean = 0, error = 0, scale = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) mean += p.pressure[i] / n;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double exact = -0.25 * amplitude * (std::cos(k * p.x[0][i]) + std::cos(k * p.x[1][i]));
+    error += std::pow(p.pressure[i] - mean - exact, 2);
+    scale += exact * exact;
+  }
+  return std::sqrt(error / scale);
+}
+
+double velocity_error(const Particles& p, double amplitude) {
+  const double k = 2 * constants::pi;
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double x = k * p.x[0][i], z = k * p.x[1][i];
+    const double u = -amplitude * std::cos(x) * std::sin(z), w = amplitude * std::sin(x) * std::cos(z);
+    error += std::pow(p.v[0][i] - u, 2) + std::pow(p.v[1][i] - w, 2);
+    scale += u * u + w * w;
+  }
+  return std::sqrt(error / scale);
+}
+
+double clumping(const Particles& p, double spacing) {
+  double least = 1e300;
+  const auto apart = [](double d) { return d - std::round(d); };  // in the periodic unit box
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      least = std::min(least, std::hypot(apart(p.x[0][i] - p.x[0][j]), apart(p.x[1][i] - p.x[1][j])));
+  return 1 - least / spacing;
+}
+
+Result run(const Setting& setting, const scene::Overrides& variant, double spacing, double end,
+           bool in_stages) {
+  const Watch watch;
+  scene::Overrides overrides = variant;
+  overrides.push_back(fmt::format("domain.spacing_m={}", spacing));
+  if (!in_stages) overrides.push_back(fmt::format("time.fixed_step_s={}", 0.05 * spacing));
+  const auto simulation = start(setting, overrides);
+  const Material& m = simulation->scene().material;
+  const Vortices exact{m.density / m.viscosity(400)};
+  const Particles& p = simulation->particles();
+  const double initial = rms_speed(p);
+  Result result;
+  double weight = 0;
+  advance(*simulation, end, [&, last = 0.0]() mutable {
+    const double t = simulation->time(), dt = t - last;
+    last = t;
+    if (t < 0.5 * end) return;
+    result.pressure += dt * pressure_error(p, std::pow(exact.factor(t), 2));
+    weight += dt;
+  });
+  result.pressure /= weight;
+  result.velocity = velocity_error(p, exact.factor(end));
+  result.decay = std::log(initial / rms_speed(p)) / end;
+  result.clumping = clumping(p, spacing);
+  result.seconds = watch.seconds();
+  result.spacing = spacing;
+  return result;
+}
+
+struct Variant {
+  const char* name;
+  scene::Overrides overrides;
+};
+
+}  // namespace
+
+Rows taylor_green(const Setting& setting) {
+  const double end = setting.small ? 0.2 : 2.0;
+  const std::vector<double> spacings =
+      setting.small ? std::vector<double>{1.0 / 30} : std::vector<double>{1.0 / 25, 1.0 / 50};
+  const double rate = 8 * constants::pi * constants::pi / 100;
+  const std::vector<std::string> jittered = {"domain.arrangement=jittered", "domain.jitter=0.2"};
+  std::vector<Variant> variants = {{"stage, lattice", {"splitting.projection=stage"}},
+                                   {"stage, jittered", {"splitting.projection=stage"}},
+                                   {"step, lattice", {"splitting.projection=step"}},
+                                   {"step, jittered", {"splitting.projection=step"}}};
+  for (Variant& v : variants) {
+    if (std::string(v.name).ends_with("jittered"))
+      v.overrides.insert(v.overrides.end(), jittered.begin(), jittered.end());
+  }
+  Rows rows;
+  for (const Variant& v : variants) {
+    std::optional<Result> coarse;
+    for (const double spacing : spacings) {
+      Measured how{resolution_text(spacing), 0, "Taylor & Green 1937"};
+      Result r;
+      try {
+        r = run(setting, v.overrides, spacing, end, std::string(v.name).starts_with("stage"));
+      } catch (const NumericalFailure& e) {
+        how.source = e.what();
+        rows.push_back(limit_row(fmt::format("{}: runs to t = {}", v.name, end), std::nan(""), 0, how));
+        continue;
+      }
+      how.seconds = r.seconds;
+      const bool judged = spacing == spacings.back();
+      const auto add = [&](Row row, double coarse_error, std::optional<double> goal) {
+        row.judged = judged;
+        row.goal = goal;
+        if (coarse) row.order = observed_order(coarse_error, row.error, coarse->spacing / spacing);
+        rows.push_back(row);
+      };
+      const std::string name = std::string(v.name) + ": ";
+      add(relative_row(name + "decay rate", r.decay, rate, 0.03, how),
+          coarse ? std::abs(coarse->decay / rate - 1) : 0, std::nullopt);
+      add(limit_row(name + "velocity, L2", r.velocity, 0.05, how), coarse ? coarse->velocity : 0,
+          std::nullopt);
+      add(limit_row(name + "pressure, L2", r.pressure, 0.10, how), coarse ? coarse->pressure : 0, 0.02);
+      Row clumps = limit_row(name + "clumping, 1 - least distance / dx", r.clumping, 1, how);
+      clumps.judged = false;
+      rows.push_back(clumps);
+      coarse = r;
+    }
+  }
+  return rows;
+}
+
+}  // namespace meltray::app

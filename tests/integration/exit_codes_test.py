@@ -1,0 +1,235 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Exit codes and refusals of the command line, and that a run that ends badly leaves what is needed to go on.
+
+usage: exit_codes_test.py PROGRAM [unittest options]
+"""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from meltray_runner import CASES, REPOSITORY, Scratch, history, main, meltray, run, snapshots, start, state, summary
+
+WELD = CASES / "tiny_weld.toml"
+
+
+def files(folder):
+    return {f: f.read_bytes() for f in folder.rglob("*") if f.is_file()}
+
+
+class Usage(Scratch):
+    def test_unknown_words(self):
+        for arguments, message in (((), "subcommand is required"), (("rum", WELD), "rum"), (("run",), "CASE"),
+                                   (("run", WELD, "--frobnicate"), "--frobnicate"),
+                                   (("run", WELD, "--threads", "0"), "--threads"),
+                                   (("run", WELD, "--threads", "many"), "--threads"),
+                                   (("run", WELD, "--until", "-1"), "--until"),
+                                   (("run", WELD, "--until", "nan"), "--until"),
+                                   (("resume", "nowhere"), "nowhere: no such run folder"),
+                                   (("plot", "nowhere"), "nowhere"), (("list", "planets"), "planets")):
+            with self.subTest(arguments):
+                done = meltray(*arguments, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn(message, done.stderr)
+                self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_unknown_command_is_answered_with_the_nearest(self):
+        done = meltray("rum", WELD)
+        self.assertIn("found 'rum'", done.stderr)
+        self.assertIn("did you mean 'run'?", done.stderr)
+        self.assertIn("validate", done.stderr)
+
+    def test_help_and_version(self):
+        for option in ("--help", "--version"):
+            done = meltray(option)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("eltray", done.stdout)
+
+    def test_resume_with_set_needs_a_folder(self):
+        folder = run(WELD, self.folder / "run", "--until", "1e-5")
+        done = meltray("resume", folder, "--set", "laser.power_w=1")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--out DIR", done.stderr)
+        done = meltray("resume", folder, "--set", "domain.spacing_m=1e-4", "--out", self.folder / "fork")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("a fork keeps its particles", done.stderr)
+        self.assertFalse((self.folder / "fork").exists())
+
+
+class Folders(Scratch):
+    def test_default_folders_are_numbered(self):
+        for name in ("tiny_weld", "tiny_weld-002", "tiny_weld-003"):
+            self.assertEqual(meltray("run", WELD, "--quiet", "--until", "5e-6", cwd=self.folder).returncode, 0)
+            self.assertTrue((self.folder / "runs" / name / "summary.json").is_file())
+
+    def test_foreign_folder(self):
+        """Neither --out nor --overwrite touches a folder without our marker."""
+        mine = self.folder / "mine"
+        mine.mkdir()
+        (mine / "history.csv").write_text("my own", encoding="utf-8")
+        for options in ((), ("--overwrite",)):
+            done = meltray("run", WELD, "--out", mine, *options)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("not empty and not a run folder of meltray", done.stderr)
+            self.assertEqual(files(mine), {mine / "history.csv": b"my own"})
+
+    def test_file_in_place_of_a_folder(self):
+        file = self.write("file", "x")
+        done = meltray("run", WELD, "--out", file, "--overwrite")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(file.read_text(encoding="utf-8"), "x")
+
+    def test_finished_run(self):
+        folder = run(WELD, self.folder / "run", "--set", "time.end_s=1e-5")
+        (folder / "notes.txt").write_text("my own", encoding="utf-8")
+        before = files(folder)
+        done = meltray("run", WELD, "--out", folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--overwrite", done.stderr)
+        self.assertEqual(files(folder), before)
+        run(WELD, folder, "--overwrite", "--set", "time.end_s=5e-6")
+        self.assertEqual(summary(folder)["time_s"], 5e-6)
+        self.assertEqual((folder / "notes.txt").read_text(encoding="utf-8"), "my own")
+        self.assertEqual(len((folder / "history.csv").read_text(encoding="utf-8").splitlines()), 3)
+
+    def test_unfinished_run_is_answered_with_the_resume_command(self):
+        folder = self.folder / "run"
+        process = start("run", WELD, "--out", folder, "--quiet")
+        while not (folder / "summary.json").exists() and process.poll() is None:
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        before = files(folder)
+        done = meltray("run", WELD, "--out", folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"meltray resume {folder}", done.stderr)
+        self.assertEqual(files(folder), before)
+
+    def test_lock(self):
+        """A second process, of whatever command, is refused while the first one works; it goes on undisturbed."""
+        folder = self.folder / "run"
+        process = start("run", WELD, "--out", folder, "--quiet")
+        try:
+            while not (folder / "case.toml").exists() and process.poll() is None:
+                time.sleep(0.01)
+            os.kill(process.pid, signal.SIGSTOP)
+            for arguments in (("resume", folder), ("run", WELD, "--out", folder, "--overwrite")):
+                done = meltray(*arguments)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("another meltray process works in this folder", done.stderr)
+        finally:
+            os.kill(process.pid, signal.SIGCONT)
+        self.assertEqual(process.wait(), 0)
+        self.assertEqual(summary(folder)["outcome"], "finished")
+
+
+class InputOutput(Scratch):
+    def test_folder_that_cannot_be_made(self):
+        done = meltray("run", WELD, "--out", "/proc/nowhere/run")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("/proc/nowhere", done.stderr)
+
+    def test_folder_without_permission(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        folder = self.folder / "closed"
+        folder.mkdir(mode=0o500)
+        done = meltray("run", WELD, "--out", folder)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn(str(folder), done.stderr)
+
+    def mount(self, size):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        command = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(disk)]
+        if os.geteuid() != 0 or subprocess.run(command, check=False, stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest("needs the right to mount a small tmpfs")
+        self.addCleanup(subprocess.run, ["umount", str(disk)], check=True)
+        return disk
+
+    def test_read_only_disk(self):
+        disk = self.mount("1m")
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        done = meltray("run", WELD, "--out", disk / "run")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn(f"{disk}/run", done.stderr)
+
+    def test_full_disk(self):
+        """Exit code 4; the last checkpoint is whole, and with more space the run goes on to the same end."""
+        disk = self.mount("8m")
+        reference = run(WELD, self.folder / "reference")
+        filler = disk / "filler"
+        # one checkpoint and a half, besides the small files: the second or third checkpoint does not fit
+        room = 1.5 * (reference / "checkpoint-a.h5").stat().st_size + 200e3
+        filler.write_bytes(bytes(int(8 * 2**20 - room)))
+        folder = disk / "run"
+        done = meltray("run", WELD, "--out", folder, "--quiet")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("No space left on device", done.stderr)
+        result = summary(folder)
+        self.assertEqual((result["outcome"], result["exit_code"]), ("io_error", 4))
+        self.assertIn("No space left on device", result["message"])
+        self.assertGreater(result["checkpoint_time_s"], 0)
+        self.assertLess(result["time_s"], 2e-4)
+        filler.unlink()
+        done = meltray("resume", folder, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same_results(reference, folder, "after a full disk")
+
+
+class NumericalFailures(Scratch):
+    def test_step_below_the_smallest(self):
+        folder = self.folder / "run"
+        done = meltray("run", WELD, "--out", folder, "--quiet", "--set", "time.min_step_s=2e-6", "--set",
+                       "time.initial_step_s=3e-6")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"time step of \S+ s at t = \S+ s is below the smallest allowed \(2e-06 s\)")
+        self.assertIn(f"meltray resume {folder}", done.stderr)
+        result = summary(folder)
+        self.assertEqual((result["outcome"], result["exit_code"]), ("failed", 3))
+        self.assertIn("below the smallest allowed", result["message"])
+        self.assertEqual(result["checkpoint_time_s"], result["time_s"])
+
+        fork = self.folder / "fork"
+        done = meltray("resume", folder, "--quiet", "--out", fork, "--set", "time.min_step_s=1e-14")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((summary(fork)["outcome"], summary(fork)["time_s"]), ("finished", 2e-4))
+        self.assertLess(summary(fork)["budgets"]["energy"]["relative_error"], 1e-10)
+
+    def test_runaway_particle(self):
+        """An explicit interface viscosity far beyond its stability limit throws a particle out of the pool."""
+        folder = self.folder / "run"
+        done = meltray("run", WELD, "--out", folder, "--quiet", "--set", "time.fixed_step_s=5e-6", "--set",
+                       "time.method=explicit", "--set", "flow.interface_viscosity_free=100")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"particle \d+ is not finite or runs away at t = \S+ s")
+        for part in ("position (", "neighbours", "explicit viscosity", f"meltray resume {folder}"):
+            self.assertIn(part, done.stderr)
+        result = summary(folder)
+        self.assertEqual((result["outcome"], result["exit_code"]), ("failed", 3))
+        self.assertIn("runs away", result["message"])
+        self.assertTrue(state(folder), "a checkpoint of the last good state")
+        self.assertGreaterEqual(len(snapshots(folder)), 2)
+
+        fork = self.folder / "fork"
+        done = meltray("resume", folder, "--quiet", "--out", fork, "--set", "time.fixed_step_s=0", "--set",
+                       "time.method=imex", "--set", "flow.interface_viscosity_free=1", "--until", "6e-5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(summary(fork)["budgets"]["energy"]["relative_error"], 1e-10)
+
+    @unittest.expectedFailure
+    def test_unstable_conduction(self):
+        """Explicit conduction far beyond its stability limit: the message names a particle and the term."""
+        folder = self.folder / "run"
+        done = meltray("run", REPOSITORY / "cases" / "melting_block.toml", "--out", folder, "--quiet", "--set",
+                       "time.fixed_step_s=1e-4", "--set", "splitting.conduction=explicit")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"particle \d+ .* at t = \S+ s")
+        self.assertIn("conduction", done.stderr)
+        self.assertLess(history(folder)["max_temperature_k"].max(), 1e5)
+
+
+if __name__ == "__main__":
+    main()
