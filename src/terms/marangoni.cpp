@@ -19,6 +19,9 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
       Matrix moment = Matrix::Zero();
       Vector gradient = Vector::Zero();
       s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+        // An adiabatic wall's dummies have no temperature of their own.
+        const int wall = s.patch->wall[p.j];
+        if (wall && !s.constants->faces[wall - 1].isothermal) return;
         const double vf = s.volume[p.j] * p.f;
         for (int a = 0; a < D; ++a) {
           gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];

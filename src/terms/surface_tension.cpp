@@ -11,11 +11,47 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
   return std::clamp((s.temperature[i] - s.constants->melting_temperature()) / ramp, 0.0, 1.0);
 }
 
-void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
-  out.resize(s.size());
+/// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the lattice,
+/// and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles' radius.
+void SurfaceTension::smooth_normals(const Stage& s) const {
+  constexpr int kPasses = 2;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    const ConstField n = view(s.normal);
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      const double* const surface = s.surface.data();
+      smooth_ = s.normal;
+      for (int pass = 0; pass < kPasses; ++pass) {
+        previous_ = smooth_;
+        const ConstField n = view(static_cast<const Components&>(previous_));
+        parallel_for(s.size(), [&](Index i) {
+          if (surface[i] == 0 || s.loose[i]) return;
+          auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
+            const double weight = surface[p.j] * p.w;
+            std::array<double, D> out;
+            for (int c = 0; c < D; ++c) out[c] = weight * n[c][p.j];
+            return out;
+          });
+          const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+          double norm = 0;
+          for (int c = 0; c < D; ++c) {
+            sum[c] += self * n[c][i];
+            norm += sum[c] * sum[c];
+          }
+          norm = std::sqrt(norm);
+          for (int c = 0; c < D; ++c) smooth_[c][i] = norm > 0 ? sum[c] / norm : 0.0;
+        });
+      }
+    });
+  });
+}
+
+void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
+  out.resize(s.size());
+  smooth_normals(s);
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    const ConstField n = view(static_cast<const Components&>(smooth_));
     const double* const surface = s.surface.data();
     const double tiny = 1e-12 * s.constants->spacing * s.constants->spacing;
     parallel_for(s.size(), [&](Index i) {

@@ -15,6 +15,10 @@ struct SurfaceTension {
   /// sigma_i kappa_i [Pa] of liquid surface particles, 0 elsewhere; one entry per patch particle.
   void pressure(const Stage& stage, std::vector<double>& out) const;
   double activation(const Stage& stage, Index i) const;
+
+ private:
+  void smooth_normals(const Stage& stage) const;
+  mutable Components smooth_, previous_;
 };
 
 /// Wetting after Breinlinger et al. 2013: near the triple line the normal is turned towards

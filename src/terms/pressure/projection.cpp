@@ -97,28 +97,26 @@ void Projection::divergence(const Stage& s, const ConstField& u, std::vector<dou
 }
 
 void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vector<double>& out) const {
-  // d/dt grad W_ij = F v_ij + (F'/r)(x_ij.v_ij) x_ij, contracted with v_ji = -v_ij.
+  // D(div v)/Dt = div a - d_a v_b d_b v_a, with a renormalised gradient: the exact derivative of the discrete
+  // divergence counts strain along the lattice a fifth too much at h = 1.3 dx.
   out.resize(particle_of_.size());
-  const double scale = 1 / s.constants->lattice.second_moment;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
-      using Kernel = decltype(kernel);
-      parallel_for(rows(), [&](Index r) {
-        const Index i = particle_of_[r];
-        double sum = 0;
-        s.pairs->template for_row<D>(i, [&](const sph::Pair<D>& p) {
-          double v2 = 0, xv = 0;
-          for (int c = 0; c < D; ++c) {
-            const double dv = v[c][i] - v[c][p.j];
-            v2 += dv * dv;
-            xv += dv * p.x[c];
+    using Matrix = Eigen::Matrix<double, D, D>;
+    parallel_for(rows(), [&](Index r) {
+      const Index i = particle_of_[r];
+      Matrix gradient = Matrix::Zero(), moment = Matrix::Zero();
+      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+        const double vf = s.volume[p.j] * p.f;
+        for (int a = 0; a < D; ++a)
+          for (int b = 0; b < D; ++b) {
+            gradient(a, b) += vf * (v[a][p.j] - v[a][i]) * p.x[b];
+            moment(a, b) -= vf * p.x[a] * p.x[b];
           }
-          const double inv_h = 2 / (s.patch->smoothing[i] + s.patch->smoothing[p.j]);
-          sum -= s.volume[p.j] * (p.f * v2 + Kernel::df(std::sqrt(p.r2()), inv_h) * xv * xv);
-        });
-        out[r] = scale * sum;
       });
+      moment.diagonal().array() += 1e-3;
+      gradient = gradient * moment.inverse();
+      out[r] = -(gradient * gradient).trace();
     });
   });
 }

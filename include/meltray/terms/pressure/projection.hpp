@@ -31,8 +31,7 @@ class Projection {
   Index rows() const { return matrix_.rows(); }
   /// div u = sum_j V_j (u_j - u_i).grad W_ij for every row; `u` has one entry per patch particle.
   void divergence(const Stage& stage, const ConstField& u, std::vector<double>& out) const;
-  /// Time derivative of the discrete divergence operator applied to v: what makes -d_i v_j d_j v_i of the
-  /// Lagrangian Poisson source consistent with divergence().
+  /// -d_a v_b d_b v_a: what the motion of Lagrangian particles adds to the rate of change of div v.
   void divergence_rate(const Stage& stage, const ConstField& v, std::vector<double>& out) const;
   /// Relative density error driving the drift correction: fill - 1, only compression near a free surface.
   void compression(const Stage& stage, std::vector<double>& out) const;
