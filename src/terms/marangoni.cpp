@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "meltray/sph/renormalise.hpp"
 #include "meltray/terms/surface_forces.hpp"
 
 namespace meltray::terms {
@@ -28,9 +29,7 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
           for (int b = 0; b < D; ++b) moment(a, b) -= vf * p.x[a] * p.x[b];
         }
       });
-      // A thin sheet has no gradient across it: a small ridge keeps the renormalisation finite.
-      moment.diagonal().array() += 1e-3;
-      gradient = moment.inverse() * gradient;
+      gradient = sph::renormalisation<D>(moment) * gradient;
       Vector n;
       double c2 = 0;
       for (int c = 0; c < D; ++c) {

@@ -107,7 +107,6 @@ velocity_m_s = [0.0, 0.0, 10.0]
         self.assert_closed(rows, result)
         self.assertGreater(result["budgets"]["energy"]["boundary_j"], 0)
 
-    @unittest.expectedFailure
     def test_isolated_pool(self):
         """Nothing goes in or out: the error is round-off of the energy that is there, not of a sum that is zero."""
         case = self.write("pool.toml", """

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "meltray/sph/renormalise.hpp"
+
 namespace meltray::terms {
 
 namespace {
@@ -114,8 +116,7 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
             moment(a, b) -= vf * p.x[a] * p.x[b];
           }
       });
-      moment.diagonal().array() += 1e-3;
-      gradient = gradient * moment.inverse();
+      gradient = gradient * sph::renormalisation<D>(moment);
       out[r] = -(gradient * gradient).trace();
     });
   });
@@ -190,8 +191,7 @@ void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutF
           for (int a = 0; a < D; ++a)
             for (int b = 0; b < D; ++b) moment(a, b) -= vf * q.x[a] * q.x[b];
         });
-        moment.diagonal().array() += 1e-3;
-        gradient = moment.inverse() * gradient;
+        gradient = sph::renormalisation<D>(moment) * gradient;
       } else {
         gradient *= plain;
       }

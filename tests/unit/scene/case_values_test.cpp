@@ -32,7 +32,7 @@ TEST_CASE("case file: keys that are not given have the defaults of the scene") {
   CHECK(s.time.integrator.method == Method::imex);
   CHECK(s.time.integrator.order == 2);
   CHECK(s.laser->beam.off_time == 1e300);
-  CHECK(s.laser->trace.rays == 2000);
+  CHECK(s.laser->trace.rays == 1000);
   CHECK_FALSE(s.laser->trace.fixed_absorptance.has_value());
   CHECK_FALSE(read_case_text(flat, "a.toml").laser.has_value());
 }
