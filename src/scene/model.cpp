@@ -35,6 +35,7 @@ double expected_speed(const Scene& scene) {
   for (const Face& face : domain.faces) speed = std::max(speed, face.velocity.norm());
   const double rho = scene.material.density, height = (domain.max - domain.min)[domain.dimension - 1];
   if (scene.terms.gravity) speed = std::max(speed, std::sqrt(domain.gravity * height));
+  speed = std::max(speed, std::sqrt(2 * scene.surface.recoil_pressure / rho));
   if (scene.terms.surface_tension)
     speed = std::max(speed, std::sqrt(scene.material.sigma(scene.material.liquidus) / (rho * domain.spacing)));
   return speed > 0 ? speed : 1.0;
