@@ -18,8 +18,9 @@ CellGrid::CellGrid(int dim, const Vec3& min, const Vec3& max, double width, std:
     if (!periodic[c]) continue;
     period_[c] = length;
     if (count_[c] < 3)
-      throw UsageError("a periodic box must be at least three support radii long: direction " + std::to_string(c) +
-                       " has " + std::to_string(length) + " m, a support radius is " + std::to_string(width) + " m");
+      throw UsageError("a periodic box must be at least three support radii long: direction " +
+                       std::to_string(c) + " has " + std::to_string(length) + " m, a support radius is " +
+                       std::to_string(width) + " m");
   }
 }
 

@@ -3,7 +3,8 @@
 
 namespace meltray {
 
-void Particles::add(const Vec3& position, double enthalpy, double m, double smoothing_length, std::uint8_t wall_face) {
+void Particles::add(const Vec3& position, double enthalpy, double m, double smoothing_length,
+                    std::uint8_t wall_face) {
   for (int c = 0; c < dim; ++c) {
     x[c].push_back(position[c]);
     v[c].push_back(0.0);

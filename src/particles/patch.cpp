@@ -9,7 +9,9 @@ namespace meltray {
 
 namespace {
 
-bool moves(const Particles& p, Index i) { return p.is_liquid(i) && !p.has(i, kRemoved); }
+bool moves(const Particles& p, Index i) {
+  return p.is_liquid(i) && !p.has(i, kRemoved);
+}
 
 }  // namespace
 
@@ -58,7 +60,8 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
   fill(particles, patch);
 }
 
-void PatchSelector::select_resting_near(const Particles& particles, std::span<const Index> centres, Patch& patch) {
+void PatchSelector::select_resting_near(const Particles& particles, std::span<const Index> centres,
+                                        Patch& patch) {
   core_.assign(grid_.cells(), 0);
   marked_.assign(grid_.cells(), 0);
   const auto x = view(particles.x);
@@ -101,7 +104,8 @@ void PatchSelector::sort_moving(const Particles& particles) {
   }
   for (Index c = 0; c < cells; ++c) moving_start_[c + 1] += moving_start_[c];
   moving_sorted_.resize(moving_.size());
-  for (std::size_t k = 0; k < moving_.size(); ++k) moving_sorted_[moving_start_[moving_cell_[k]]++] = moving_[k];
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    moving_sorted_[moving_start_[moving_cell_[k]]++] = moving_[k];
   for (Index c = cells; c > 0; --c) moving_start_[c] = moving_start_[c - 1];
   moving_start_[0] = 0;
 }

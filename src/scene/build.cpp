@@ -11,8 +11,12 @@ namespace meltray::scene {
 namespace {
 
 /// Faces are x_min, x_max, y_min, y_max, z_min, z_max; in 2-D component 1 is z.
-int face_axis(int face, int dim) { return dim == 3 ? face / 2 : (face < 2 ? 0 : 1); }
-bool face_exists(int face, int dim) { return dim == 3 || face / 2 != 1; }
+int face_axis(int face, int dim) {
+  return dim == 3 ? face / 2 : (face < 2 ? 0 : 1);
+}
+bool face_exists(int face, int dim) {
+  return dim == 3 || face / 2 != 1;
+}
 
 /// Uniform in [-1, 1) from the lattice site and the seed (splitmix64): the same on every machine.
 double jitter(std::uint64_t site, std::uint64_t component, std::uint64_t seed) {
@@ -71,7 +75,8 @@ void for_sites(const Domain& domain, F&& f) {
           const std::array<std::int64_t, 3> n{i, j, k};
           Vec3 x = Vec3::Zero();
           // Spread evenly where the length is no multiple of the spacing.
-          for (int c = 0; c < dim; ++c) x[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
+          for (int c = 0; c < dim; ++c)
+            x[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
           f(x, site++);
         }
     return;
@@ -148,9 +153,11 @@ void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& 
         }
         if (owner < 0) continue;
         Vec3 p = Vec3::Zero();
-        for (int c = 0; c < dim; ++c) p[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
+        for (int c = 0; c < dim; ++c)
+          p[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
         const Face& face = domain.faces[owner];
-        const double t = face.thermal == ThermalKind::temperature ? face.temperature : scene.heat.initial_temperature;
+        const double t =
+            face.thermal == ThermalKind::temperature ? face.temperature : scene.heat.initial_temperature;
         out.add(p, scene.material.enthalpy(t), mass, k.smoothing, static_cast<std::uint8_t>(owner + 1));
         const std::size_t i = out.size() - 1;
         out.temperature[i] = t;
@@ -191,7 +198,8 @@ Particles build_particles(const Scene& scene, const terms::SceneConstants& const
   Particles out;
   out.dim = constants.dim;
   add_bodies(scene, constants, out);
-  if (out.size() == 0) throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");
+  if (out.size() == 0)
+    throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");
   add_dummies(scene, constants, out);
   return out;
 }

@@ -8,8 +8,8 @@ namespace meltray::scene {
 
 namespace {
 
-/// Hits reach surface particles within this many spacings: a hit on the isosurface is half a spacing above the
-/// centres of the outermost layer and at most 0.9 spacings from the nearest of them.
+/// Hits reach surface particles within this many spacings: a hit on the isosurface is half a spacing above
+/// the centres of the outermost layer and at most 0.9 spacings from the nearest of them.
 constexpr double kDepositRadius = 1.3;
 
 laser::TraceOptions options_of(const Scene& scene) {
@@ -25,7 +25,8 @@ LaserCoupling::LaserCoupling(const Scene& scene, const terms::SceneConstants& co
     : scene_(scene), constants_(constants), beam_(scene.laser->beam) {}
 
 bool LaserCoupling::due(double t, double largest_motion) const {
-  return stale_ || t >= next_trace_ || motion_ + largest_motion > scene_.laser->retrace_motion * constants_.spacing;
+  return stale_ || t >= next_trace_ ||
+         motion_ + largest_motion > scene_.laser->retrace_motion * constants_.spacing;
 }
 
 laser::Box LaserCoupling::region(double t, const Particles& particles, const PatchSelector& selector) const {
@@ -42,7 +43,8 @@ laser::Box LaserCoupling::region(double t, const Particles& particles, const Pat
   for (const laser::Hit& hit : hits_) deepest = std::min(deepest, hit.position[2]);
   for (Index i : selector.moving()) {
     const double z = particles.x[2][i], on_axis = focus[0] + axis[0] / -axis[2] * (spec.focus_z - z);
-    if (std::abs(particles.x[1][i] - focus[1]) > window || std::abs(particles.x[0][i] - on_axis) > window) continue;
+    if (std::abs(particles.x[1][i] - focus[1]) > window || std::abs(particles.x[0][i] - on_axis) > window)
+      continue;
     deepest = std::min(deepest, z);
     high[2] = std::max(high[2], z + margin);
   }
@@ -69,8 +71,8 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   }
   std::vector<std::uint8_t> liquid(cloud_.size());
   for (std::size_t k = 0; k < cloud_.size(); ++k) liquid[k] = particles.is_liquid(cloud_[k]);
-  const laser::PointCloud cloud{{cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid.data(),
-                                constants_.spacing};
+  const laser::PointCloud cloud{
+      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid.data(), constants_.spacing};
   tracer_.set_mesh(laser::reconstruct_surface(cloud, box));
 
   hits_.clear();
@@ -81,7 +83,8 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   laser::Trace trace = tracer_.trace(rays, options_of(scene_));
   ledger_ = trace.ledger;
   hits_ = std::move(trace.hits);
-  const double error = std::abs(ledger_.in - ledger_.absorbed - ledger_.escaped - ledger_.residual - ledger_.dropped);
+  const double error =
+      std::abs(ledger_.in - ledger_.absorbed - ledger_.escaped - ledger_.residual - ledger_.dropped);
   budget_.worst = std::max(budget_.worst, error / ledger_.in);
   ++budget_.traces;
   budget_.dropped_rays += ledger_.dropped_rays;
@@ -122,9 +125,10 @@ void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& powe
     for (std::size_t k = 0; k < cloud_.size(); ++k) cx_[c][k] = stage.patch->x[c][cloud_[k]];
   }
   cloud_power_.assign(cloud_.size(), 0.0);
-  const laser::PointCloud cloud{{cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr,
-                                constants_.spacing};
-  undeposited_ = laser::deposit(hits_, cloud, weight_.data(), kDepositRadius * constants_.spacing, cloud_power_.data());
+  const laser::PointCloud cloud{
+      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr, constants_.spacing};
+  undeposited_ =
+      laser::deposit(hits_, cloud, weight_.data(), kDepositRadius * constants_.spacing, cloud_power_.data());
   for (std::size_t k = 0; k < cloud_.size(); ++k) power[cloud_[k]] = cloud_power_[k];
 }
 
@@ -155,7 +159,8 @@ void LaserCoupling::archive(Archive& a) {
   a.value("laser/ledger_residual", ledger_.residual);
   // The region of the next trace depends on how deep light went: the hits are part of the state.
   std::vector<double> hits;
-  for (const laser::Hit& h : hits_) hits.insert(hits.end(), {h.position[0], h.position[1], h.position[2], h.power});
+  for (const laser::Hit& h : hits_)
+    hits.insert(hits.end(), {h.position[0], h.position[1], h.position[2], h.power});
   a.values("laser/hits", hits);
   if (a.loading()) {
     hits_.clear();

@@ -31,7 +31,7 @@ class LaserCoupling {
   const laser::Beam& beam() const { return beam_; }
   const LaserBudget& budget() const { return budget_; }
   LaserState state(double t) const;
-  double undeposited() const { return undeposited_; }   ///< [W] at the last deposit
+  double undeposited() const { return undeposited_; }  ///< [W] at the last deposit
   double motion_budget() const { return motion_; }
   void add_motion(double m) { motion_ += m; }
   /// Saving and loading force a new trace at the next step.

@@ -17,9 +17,12 @@ constexpr int kLinearIterations = 500;
 
 terms::RecoilOnset onset(RecoilOnset o) {
   switch (o) {
-    case RecoilOnset::smooth: return terms::RecoilOnset::smooth;
-    case RecoilOnset::cutoff: return terms::RecoilOnset::cutoff;
-    case RecoilOnset::ambient: return terms::RecoilOnset::ambient;
+    case RecoilOnset::smooth:
+      return terms::RecoilOnset::smooth;
+    case RecoilOnset::cutoff:
+      return terms::RecoilOnset::cutoff;
+    case RecoilOnset::ambient:
+      return terms::RecoilOnset::ambient;
   }
   return terms::RecoilOnset::smooth;
 }
@@ -37,11 +40,14 @@ double expected_speed(const Scene& scene) {
   if (scene.terms.gravity) speed = std::max(speed, std::sqrt(domain.gravity * height));
   speed = std::max(speed, std::sqrt(2 * scene.surface.recoil_pressure / rho));
   if (scene.terms.surface_tension)
-    speed = std::max(speed, std::sqrt(scene.material.sigma(scene.material.liquidus) / (rho * domain.spacing)));
+    speed =
+        std::max(speed, std::sqrt(scene.material.sigma(scene.material.liquidus) / (rho * domain.spacing)));
   return speed > 0 ? speed : 1.0;
 }
 
-bool initially_implicit(PartitionChoice c) { return c == PartitionChoice::implicit_; }
+bool initially_implicit(PartitionChoice c) {
+  return c == PartitionChoice::implicit_;
+}
 
 }  // namespace
 
@@ -54,18 +60,19 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
              scene.surface.ambient_temperature};
   tension_.ramp = scene.surface.activation_ramp;
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
-  recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient, scene.surface.recoil_pressure,
-             scene.surface.recoil_ramp};
+  recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient,
+             scene.surface.recoil_pressure, scene.surface.recoil_ramp};
   buoyancy_ = {scene.terms.gravity, scene.terms.buoyancy, scene.domain.gravity};
   shifting_ = {flow.shifting, flow.shifting_speed};
-  projection_options_ = {scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf
-                                                                  : terms::SurfaceEntry::pressure,
-                         flow.pressure_tolerance, flow.pressure_max_iterations};
+  projection_options_ = {
+      scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf : terms::SurfaceEntry::pressure,
+      flow.pressure_tolerance, flow.pressure_max_iterations};
   const double crossing = constants.spacing / expected_speed(scene);
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   divergence_time = kDivergenceCrossings * crossing;
   partitions = {initially_implicit(scene.time.conduction), initially_implicit(scene.time.viscosity),
-                initially_implicit(scene.time.interface_viscosity), initially_implicit(scene.time.evaporation)};
+                initially_implicit(scene.time.interface_viscosity),
+                initially_implicit(scene.time.evaporation)};
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
@@ -127,7 +134,8 @@ void Model::evaluate(double t, const double* y) {
   // coefficients that rest on them are frozen at the start of the step, and renewed for the projection.
   const bool same_x = geometry_valid_ && last_y_.size() == n &&
                       (freezes_geometry() || std::equal(y, y + dim * nm, last_y_.begin()));
-  const bool same_h = last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
+  const bool same_h =
+      last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
   const bool same_v =
       last_y_.size() == n && std::equal(y + dim * nm, y + 2 * dim * nm, last_y_.begin() + dim * nm);
   const bool moved = !(last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin()));
@@ -142,9 +150,8 @@ void Model::evaluate(double t, const double* y) {
     });
   }
   const double* const h = y + 2 * dim * nm;
-  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
-    patch.h[stage.heated[k]] = h[k];
-  });
+  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
+               [&](std::ptrdiff_t k) { patch.h[stage.heated[k]] = h[k]; });
 
   if (!same_x) {
     const auto timer = timers_.measure(Part::neighbours);
@@ -206,9 +213,8 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
     });
   }
   double* const dh = rate + 2 * dim * nm;
-  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()), [&](std::ptrdiff_t k) {
-    dh[k] = heating_[stage.heated[k]];
-  });
+  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
+               [&](std::ptrdiff_t k) { dh[k] = heating_[stage.heated[k]]; });
   crossings.write(rate + crossings_begin());
 }
 
@@ -263,7 +269,7 @@ void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& 
       rates.heating[i] += laser_power[i] / patch.mass[i];
     });
     crossings.laser += parallel_sum(static_cast<std::ptrdiff_t>(stage.heated.size()),
-                                 [&](std::ptrdiff_t k) { return laser_power[stage.heated[k]]; });
+                                    [&](std::ptrdiff_t k) { return laser_power[stage.heated[k]]; });
   }
 }
 
@@ -331,8 +337,9 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
     conduction_valid_ = true;
     solve_h_b_.assign(stage.size(), 0.0);
     for (std::size_t k = 0; k < nh; ++k) solve_h_b_[stage.heated[k]] = bh[k];
-    const int iterations = conduction_.solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
-                                             scene_.time.linear_tolerance, kLinearIterations);
+    const int iterations =
+        conduction_.solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
+                          scene_.time.linear_tolerance, kLinearIterations);
     if (iterations < 0) return false;
     counters->heat_iterations += iterations;
     for (std::size_t k = 0; k < nh; ++k) bh[k] = solve_h_x_[stage.heated[k]];

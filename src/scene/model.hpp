@@ -21,12 +21,13 @@ namespace meltray::scene {
 
 /// Where each term that can be implicit is integrated at present; "auto" terms move with their stiffness.
 struct Partitions {
-  bool conduction = false, viscosity = false, interface_viscosity = false, losses = false;  ///< true = implicit
+  bool conduction = false, viscosity = false, interface_viscosity = false,
+       losses = false;  ///< true = implicit
   bool operator==(const Partitions&) const = default;
 };
 
-/// The active terms of a scene as an ODE on the patch: y = [x | v | h | crossings] of the particles that move and
-/// those that exchange heat; f_E and f_I are sums over the terms of each partition.
+/// The active terms of a scene as an ODE on the patch: y = [x | v | h | crossings] of the particles that move
+/// and those that exchange heat; f_E and f_I are sums over the terms of each partition.
 class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
@@ -39,7 +40,8 @@ class Model : public OdeProblem {
   void invalidate();
   /// One projection over a step that has just been taken: Eq. (6) at the patch's positions; corrects v and x.
   void project(double t, double dt, const std::vector<double>& y);
-  /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06 m/s^2, ...".
+  /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06
+  /// m/s^2, ...".
   std::string blame(Index i, double dt);
   /// Chooses the partition of "auto" terms from their stiffness against the step expected next.
   void choose_partitions(double dt);
@@ -58,11 +60,11 @@ class Model : public OdeProblem {
   terms::Stage stage;
   Patch patch;
   sph::PairList pairs;
-  std::vector<double> laser_power;   ///< per patch particle [W]; empty without a laser
+  std::vector<double> laser_power;  ///< per patch particle [W]; empty without a laser
   Partitions partitions;
-  double largest_acceleration = 0;   ///< of the last projection [m/s^2]
-  double drift_time = 0;        ///< in which errors of density are taken back [s]
-  double divergence_time = 0;   ///< in which the `stage` projection takes back errors of divergence [s]
+  double largest_acceleration = 0;  ///< of the last projection [m/s^2]
+  double drift_time = 0;            ///< in which errors of density are taken back [s]
+  double divergence_time = 0;       ///< in which the `stage` projection takes back errors of divergence [s]
   Counters* counters = nullptr;
   Vec3 pressure_impulse = Vec3::Zero();  ///< of the last step's projection [kg m/s]
   terms::Projection projection;
@@ -97,11 +99,11 @@ class Model : public OdeProblem {
   terms::Shifting shifting_;
   terms::ProjectionOptions projection_options_;
 
-  Components acceleration_, transport_, all_forces_;     ///< scratch, one entry per patch particle
+  Components acceleration_, transport_, all_forces_;  ///< scratch, one entry per patch particle
   std::vector<double> heating_, surface_pressure_, loss_slope_, source_, other_, start_x_;
   Components solve_b_, solve_x_;
   std::vector<double> solve_h_b_, solve_h_x_;
-  std::vector<double> last_y_;               ///< state that stage and patch stand for
+  std::vector<double> last_y_;  ///< state that stage and patch stand for
   bool geometry_valid_ = false, implicit_viscous_valid_ = false, explicit_viscous_valid_ = false,
        conduction_valid_ = false;
 };

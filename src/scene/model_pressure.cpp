@@ -13,8 +13,9 @@ void Model::count_solve(const solve::SolveReport& report, double t) {
   ++counters->pressure_solves;
   counters->pressure_iterations += report.iterations;
   if (!std::isfinite(report.residual))
-    throw NumericalFailure(fmt::format("pressure: the Poisson solve gave a residual of {} at t = {:.9g} s with {} rows",
-                                       report.residual, t, projection.rows()));
+    throw NumericalFailure(
+        fmt::format("pressure: the Poisson solve gave a residual of {} at t = {:.9g} s with {} rows",
+                    report.residual, t, projection.rows()));
   if (!report.converged) ++counters->pressure_at_limit;
 }
 
@@ -27,7 +28,8 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
   largest_acceleration = 0;
   pressure_impulse = Vec3::Zero();
   if (projection.rows() == 0) return;
-  // Eq. (6): div(grad p / rho) = div v* / dt, less the divergence that undoes a density error over drift_time.
+  // Eq. (6): div(grad p / rho) = div v* / dt, less the divergence that undoes a density error over
+  // drift_time.
   projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
   projection.compression(stage, other_);
   const double relax = 1 / std::max(drift_time, 2 * dt);
@@ -56,8 +58,8 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
 }
 
 void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) {
-  // Lagrangian particles: D(div v)/Dt = div a + dDiv(v), so that div(grad p/rho) = div f* + dDiv(v) + div v/tau
-  // keeps div v = 0 and pulls any error back with the fixed time constant tau.
+  // Lagrangian particles: D(div v)/Dt = div a + dDiv(v), so that div(grad p/rho) = div f* + dDiv(v) + div
+  // v/tau keeps div v = 0 and pulls any error back with the fixed time constant tau.
   update_surface_pressure();
   const auto timer = timers_.measure(Part::pressure);
   projection.assemble(stage);
@@ -109,7 +111,8 @@ std::string Model::blame(Index i, double dt) {
   }
   std::sort(pulls.rbegin(), pulls.rend());
   std::string text = "accelerations in the last accepted state: ";
-  for (const auto& [a, name] : pulls) text += fmt::format("{} {:.3g} m/s^2{}", name, a, &name == &pulls.back().second ? "" : ", ");
+  for (const auto& [a, name] : pulls)
+    text += fmt::format("{} {:.3g} m/s^2{}", name, a, &name == &pulls.back().second ? "" : ", ");
   return text;
 }
 
@@ -151,7 +154,8 @@ std::vector<StepLimit> Model::step_limits() {
     if (rate > 0) limits.push_back({time.cfl_thermal / rate, "evaporation"});
   }
   if (scene_.laser && scene_.laser->beam.feed > 0)
-    limits.push_back({time.beam_travel * 0.5 * scene_.laser->beam.focal_diameter / scene_.laser->beam.feed, "beam"});
+    limits.push_back(
+        {time.beam_travel * 0.5 * scene_.laser->beam.focal_diameter / scene_.laser->beam.feed, "beam"});
   return limits;
 }
 
@@ -164,8 +168,8 @@ StepLimit Model::stable_step(double t, const double* y) {
 }
 
 void Model::choose_partitions(double dt) {
-  // An explicit term is stable below 1/rate; it moves to the implicit side when it would set the step, and back
-  // when it is well below, so that the choice does not flicker.
+  // An explicit term is stable below 1/rate; it moves to the implicit side when it would set the step, and
+  // back when it is well below, so that the choice does not flicker.
   const auto choose = [&](PartitionChoice choice, bool& implicit_part, auto&& rate) {
     if (choice != PartitionChoice::automatic) return;
     const double stiffness = rate() * dt;

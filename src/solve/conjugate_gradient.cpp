@@ -20,8 +20,8 @@ void multiply(const SymmetricMatrix& a, const std::vector<double>& x, std::vecto
   });
 }
 
-SolveReport ConjugateGradient::solve(const SymmetricMatrix& a, const std::vector<double>& b, std::vector<double>& x,
-                                     double tolerance, int max_iterations) {
+SolveReport ConjugateGradient::solve(const SymmetricMatrix& a, const std::vector<double>& b,
+                                     std::vector<double>& x, double tolerance, int max_iterations) {
   const Index n = a.rows();
   for (auto* v : {&r_, &p_, &ap_, &inverse_}) v->resize(n);
   parallel_for(n, [&](Index i) { inverse_[i] = a.diagonal[i] > 0 ? 1 / a.diagonal[i] : 0.0; });
@@ -60,7 +60,8 @@ SolveReport ConjugateGradient::solve(const SymmetricMatrix& a, const std::vector
   return report;
 }
 
-int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored, std::vector<Index>& group) {
+int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored,
+                        std::vector<Index>& group) {
   const Index n = a.rows();
   group.assign(n, -1);
   std::vector<Index> stack;

@@ -33,7 +33,8 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
       // Candidates of the whole cell, copied side by side so that the distance test runs over plain arrays.
       block.candidate.clear();
       grid.for_block(cell, 1, [&](Index near) {
-        for (Index j = patch.cell_start[near]; j < patch.cell_start[near + 1]; ++j) block.candidate.push_back(j);
+        for (Index j = patch.cell_start[near]; j < patch.cell_start[near + 1]; ++j)
+          block.candidate.push_back(j);
       });
       const Index n = static_cast<Index>(block.candidate.size());
       for (int c = 0; c < dim; ++c) {
@@ -76,7 +77,8 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
   }
 }
 
-void PairList::build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra) {
+void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
+                     const std::vector<std::uint8_t>& extra) {
   dim_ = patch.dim;
   period_ = grid.period();
   const Index n = patch.size();
@@ -170,8 +172,9 @@ void PairList::refresh(const Patch& patch, KernelType kernel) {
 }
 
 std::size_t PairList::bytes() const {
-  return j_.capacity() * sizeof(Index) + (dx_[0].capacity() + dx_[1].capacity() + dx_[2].capacity() +
-                                          w_.capacity() + f_.capacity()) * sizeof(double);
+  return j_.capacity() * sizeof(Index) +
+         (dx_[0].capacity() + dx_[1].capacity() + dx_[2].capacity() + w_.capacity() + f_.capacity()) *
+             sizeof(double);
 }
 
 }  // namespace meltray::sph

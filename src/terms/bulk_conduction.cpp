@@ -9,13 +9,13 @@ namespace meltray::terms {
 
 namespace {
 
-constexpr double kAwake = 1e-3;        ///< [K] away from rest
-constexpr double kExplicitShare = 0.5; ///< of the Gershgorin limit per explicit sub-step
+constexpr double kAwake = 1e-3;         ///< [K] away from rest
+constexpr double kExplicitShare = 0.5;  ///< of the Gershgorin limit per explicit sub-step
 
 }  // namespace
 
-void BulkConduction::build(const SceneConstants& constants, PatchSelector& selector, const Particles& particles,
-                           double rest_temperature) {
+void BulkConduction::build(const SceneConstants& constants, PatchSelector& selector,
+                           const Particles& particles, double rest_temperature) {
   std::vector<Index> awake;
   for (Index i = 0; i < static_cast<Index>(particles.size()); ++i)
     if (!particles.is_liquid(i) && !particles.is_wall(i) && !particles.has(i, kRemoved) &&
@@ -40,7 +40,7 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
       pairs_.for_row<D>(i, [&](const sph::Pair<D>& p) {
         if (patch_.wall[p.j] || !(awake_[i] || awake_[p.j])) return;
         k_[p.k] = conduction_coefficient(vi, patch_.mass[p.j] / constants.density, li,
-                                       material.conductivity(patch_.h[p.j]), scale * p.f);
+                                         material.conductivity(patch_.h[p.j]), scale * p.f);
       });
     });
   });
@@ -51,8 +51,8 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
   });
 }
 
-void BulkConduction::exchange(const SceneConstants& constants, double dt, const std::vector<std::uint8_t>& in_state,
-                              Particles& particles) {
+void BulkConduction::exchange(const SceneConstants& constants, double dt,
+                              const std::vector<std::uint8_t>& in_state, Particles& particles) {
   const Index n = patch_.size();
   temperature_.resize(n);
   gain_.resize(n);

@@ -8,9 +8,12 @@ double Recoil::pressure(const Material& m, double temperature, double t) const {
   if (prescribed > 0) return prescribed * (prescribed_ramp > 0 ? std::min(1.0, t / prescribed_ramp) : 1.0);
   const double p = coefficient * m.saturation_pressure(temperature);
   switch (onset) {
-    case RecoilOnset::smooth: return p;
-    case RecoilOnset::cutoff: return temperature >= m.boiling_temperature ? p : 0.0;
-    case RecoilOnset::ambient: return std::max(0.0, p - constants::standard_atmosphere);
+    case RecoilOnset::smooth:
+      return p;
+    case RecoilOnset::cutoff:
+      return temperature >= m.boiling_temperature ? p : 0.0;
+    case RecoilOnset::ambient:
+      return std::max(0.0, p - constants::standard_atmosphere);
   }
   return p;
 }

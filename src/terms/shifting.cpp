@@ -36,10 +36,11 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
           speed += v[c][i] * v[c][i];
           gradient += sum[c] * sum[c];
         }
-        // C h |sum| / (1 + C h |sum| / kLargest): a particle is never shifted faster than a share of its speed.
+        // C h |sum| / (1 + C h |sum| / kLargest): a particle is never shifted faster than a share of its
+        // speed.
         const double strength = coefficient * s.constants->smoothing;
-        const double scale =
-            -strength * std::max(std::sqrt(speed), least_speed) * inside / (1 + strength * std::sqrt(gradient) / kLargest);
+        const double scale = -strength * std::max(std::sqrt(speed), least_speed) * inside /
+                             (1 + strength * std::sqrt(gradient) / kLargest);
         double du[D];
         for (int c = 0; c < D; ++c) {
           du[c] = scale * sum[c];

@@ -21,7 +21,8 @@ double Stage::area_of_spacing() const {
 void prepare_stage(Stage& s) {
   const Index n = s.size();
   for (auto* a : {&s.volume, &s.temperature}) a->resize(n);
-  for (auto* a : {&s.fill, &s.diagonal, &s.exposure, &s.surface, &s.area, &s.surface_pressure}) a->assign(n, 0.0);
+  for (auto* a : {&s.fill, &s.diagonal, &s.exposure, &s.surface, &s.area, &s.surface_pressure})
+    a->assign(n, 0.0);
   for (int c = 0; c < s.constants->dim; ++c) {
     s.grad_c[c].assign(n, 0.0);
     s.normal[c].assign(n, 0.0);
@@ -71,16 +72,18 @@ void compute_surface(Stage& s) {
         }
         norm = std::sqrt(norm);
         s.exposure[i] = std::min(1.0, 2 * norm * spacing / lattice.face_gradient);
-        const double t = std::clamp(std::max((kSurfaceNone - s.fill[i]) / (kSurfaceNone - kSurfaceFull),
-                                             (s.exposure[i] - kExposureNone) / (kExposureFull - kExposureNone)),
-                                    0.0, 1.0);
+        const double t =
+            std::clamp(std::max((kSurfaceNone - s.fill[i]) / (kSurfaceNone - kSurfaceFull),
+                                (s.exposure[i] - kExposureNone) / (kExposureFull - kExposureNone)),
+                       0.0, 1.0);
         // Dummies behind a face end where the box ends: that is not a free surface.
         s.surface[i] = s.patch->wall[i] ? 0.0 : t * t * (3 - 2 * t);
         if (s.surface[i] > 0 && norm > 0)
           for (int c = 0; c < D; ++c) s.normal[c][i] = -sum[2 + c] / norm;
-        // The missing part of the kernel measures how much of a particle is open: a particle of a flat face carries
-        // the area of one lattice site, one at an edge or in a drop more. The colour gradient alone would not do:
-        // it vanishes by symmetry for a thin sheet or a lone particle, which then could not cool.
+        // The missing part of the kernel measures how much of a particle is open: a particle of a flat face
+        // carries the area of one lattice site, one at an edge or in a drop more. The colour gradient alone
+        // would not do: it vanishes by symmetry for a thin sheet or a lone particle, which then could not
+        // cool.
         s.area[i] = s.surface[i] * site * std::max((1 - s.fill[i]) / (1 - lattice.face_fill), s.exposure[i]);
       });
     });

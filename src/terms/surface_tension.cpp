@@ -11,8 +11,9 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
   return std::clamp((s.temperature[i] - s.constants->melting_temperature()) / ramp, 0.0, 1.0);
 }
 
-/// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the lattice,
-/// and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles' radius.
+/// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the
+/// lattice, and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles'
+/// radius.
 void SurfaceTension::smooth_normals(const Stage& s) const {
   constexpr int kPasses = 2;
   sph::with_dim(s.constants->dim, [&](auto d) {

@@ -7,8 +7,9 @@ namespace {
 
 constexpr Vec3 Crossings::*kForces[5] = {&Crossings::gravity, &Crossings::surface, &Crossings::viscosity,
                                          &Crossings::shifting, &Crossings::pressure};
-constexpr double Crossings::*kPowers[5] = {&Crossings::evaporation, &Crossings::radiation, &Crossings::boundary,
-                                           &Crossings::laser, &Crossings::evaporated_mass};
+constexpr double Crossings::*kPowers[5] = {&Crossings::evaporation, &Crossings::radiation,
+                                           &Crossings::boundary, &Crossings::laser,
+                                           &Crossings::evaporated_mass};
 
 }  // namespace
 

@@ -25,7 +25,8 @@ double no_slip_factor(const Stage& s, Index i, Index j) {
 
 }  // namespace
 
-void ViscousOperator::assemble(const Stage& s, ViscousChoice choice, const InterfaceViscosityParameters& interface) {
+void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
+                               const InterfaceViscosityParameters& interface) {
   choice_ = choice;
   const auto& pairs = *s.pairs;
   const Index n = s.size();
@@ -116,7 +117,8 @@ void ViscousOperator::for_rows(const Stage& s, const ConstField& u, F&& f) const
     run(std::false_type{}, std::true_type{});
 }
 
-void ViscousOperator::add_acceleration(const Stage& s, const ConstField& v, const MutField& acceleration) const {
+void ViscousOperator::add_acceleration(const Stage& s, const ConstField& v,
+                                       const MutField& acceleration) const {
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     for_rows<D>(s, v, [&](Index i, const std::array<double, D>& force) {
@@ -142,10 +144,11 @@ double ViscousOperator::rate(const Stage& s) const {
   });
 }
 
-int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, const MutField& x, double tolerance,
-                           int max_iterations) const {
-  // (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij + d_ij (x_ij.e) e with resting neighbours
-  // held at zero change; symmetric positive definite: conjugate gradients with a diagonal preconditioner.
+int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, const MutField& x,
+                           double tolerance, int max_iterations) const {
+  // (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij + d_ij (x_ij.e) e with resting
+  // neighbours held at zero change; symmetric positive definite: conjugate gradients with a diagonal
+  // preconditioner.
   const Index n = s.size();
   const auto& pairs = *s.pairs;
   const auto count = static_cast<std::ptrdiff_t>(s.moving.size());

@@ -14,7 +14,8 @@ constexpr double kWallColourFull = 0.2;
 }  // namespace
 
 void Wetting::turn_normals(Stage& s) const {
-  const double theta = contact_angle_deg * constants::pi / 180, sine = std::sin(theta), cosine = std::cos(theta);
+  const double theta = contact_angle_deg * constants::pi / 180, sine = std::sin(theta),
+               cosine = std::cos(theta);
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     const auto count = static_cast<std::ptrdiff_t>(s.moving.size());

@@ -10,8 +10,12 @@
 namespace meltray {
 
 /// Number of threads of every parallel loop (set once at start; results do not depend on it).
-inline void set_threads(int n) { omp_set_num_threads(n); }
-inline int threads() { return omp_get_max_threads(); }
+inline void set_threads(int n) {
+  omp_set_num_threads(n);
+}
+inline int threads() {
+  return omp_get_max_threads();
+}
 
 /// Below this many items a parallel region costs more than it gains.
 inline constexpr std::ptrdiff_t kSerialBelow = 512;
@@ -30,7 +34,8 @@ void parallel_for(std::ptrdiff_t n, F&& f) {
 
 /// Reductions run over fixed blocks that are combined in order: bitwise independent of the number of threads.
 inline constexpr std::ptrdiff_t kReductionBlock = 1024;
-/// A sum over fewer items is cheaper than waking the other threads; the blocks, and so the bits, are the same.
+/// A sum over fewer items is cheaper than waking the other threads; the blocks, and so the bits, are the
+/// same.
 inline constexpr std::ptrdiff_t kSerialReductionBelow = 8 * kReductionBlock;
 
 /// Reduces block results `block(begin, end)` with `combine(total, part)` in fixed order.

@@ -8,7 +8,19 @@
 namespace meltray {
 
 /// Parts of a run whose share of the wall time is reported.
-enum class Part { neighbours, surface, forces, viscosity, pressure, heat, laser, phase, observe, integrator, count };
+enum class Part {
+  neighbours,
+  surface,
+  forces,
+  viscosity,
+  pressure,
+  heat,
+  laser,
+  phase,
+  observe,
+  integrator,
+  count
+};
 
 inline constexpr std::array<std::string_view, static_cast<int>(Part::count)> kPartNames = {
     "neighbours", "surface", "forces", "viscosity", "pressure",

@@ -20,7 +20,11 @@ using Components = std::array<std::vector<double>, 3>;
 using ConstField = std::array<const double*, 3>;
 using MutField = std::array<double*, 3>;
 
-inline ConstField view(const Components& c) { return {c[0].data(), c[1].data(), c[2].data()}; }
-inline MutField view(Components& c) { return {c[0].data(), c[1].data(), c[2].data()}; }
+inline ConstField view(const Components& c) {
+  return {c[0].data(), c[1].data(), c[2].data()};
+}
+inline MutField view(Components& c) {
+  return {c[0].data(), c[1].data(), c[2].data()};
+}
 
 }  // namespace meltray

@@ -13,30 +13,32 @@ enum class Phase : std::uint8_t { solid = 0, liquid = 1 };
 
 /// Bits of Particles::flags.
 enum Flag : std::uint8_t {
-  kResolidified = 2,   ///< was liquid and is solid again: the seam
-  kRemoved = 4,        ///< left the scene (ejected or runaway): takes part in nothing
-  kWasLiquid = 8,      ///< has been liquid at some time
+  kResolidified = 2,  ///< was liquid and is solid again: the seam
+  kRemoved = 4,       ///< left the scene (ejected or runaway): takes part in nothing
+  kWasLiquid = 8,     ///< has been liquid at some time
 };
 
-/// All particles of a scene as separate arrays. The order never changes, so an index is a particle's identity.
+/// All particles of a scene as separate arrays. The order never changes, so an index is a particle's
+/// identity.
 struct Particles {
   int dim = 3;
-  Components x;                       ///< position [m]
-  Components v;                       ///< velocity [m/s]
-  std::vector<double> h;              ///< specific enthalpy [J/kg]
-  std::vector<double> mass;           ///< [kg] (per metre of depth in 2-D)
-  std::vector<double> smoothing;      ///< smoothing length [m]; support radius is twice this
-  std::vector<double> pressure;       ///< last pressure [Pa]; warm start of the Poisson solver
-  std::vector<double> temperature;    ///< derived from h [K]; kept for output and for bulk conduction
-  std::vector<std::uint8_t> phase;    ///< Phase
-  std::vector<std::uint8_t> flags;    ///< Flag bits
-  std::vector<std::uint8_t> wall;     ///< 0, or 1 + index of the box face a dummy belongs to
+  Components x;                     ///< position [m]
+  Components v;                     ///< velocity [m/s]
+  std::vector<double> h;            ///< specific enthalpy [J/kg]
+  std::vector<double> mass;         ///< [kg] (per metre of depth in 2-D)
+  std::vector<double> smoothing;    ///< smoothing length [m]; support radius is twice this
+  std::vector<double> pressure;     ///< last pressure [Pa]; warm start of the Poisson solver
+  std::vector<double> temperature;  ///< derived from h [K]; kept for output and for bulk conduction
+  std::vector<std::uint8_t> phase;  ///< Phase
+  std::vector<std::uint8_t> flags;  ///< Flag bits
+  std::vector<std::uint8_t> wall;   ///< 0, or 1 + index of the box face a dummy belongs to
 
   std::size_t size() const { return h.size(); }
   bool is_liquid(std::size_t i) const { return phase[i] == static_cast<std::uint8_t>(Phase::liquid); }
   bool has(std::size_t i, Flag f) const { return (flags[i] & f) != 0; }
   /// Appends one solid particle at rest; `wall_face` is 1 + face for a dummy, 0 otherwise.
-  void add(const Vec3& position, double enthalpy, double m, double smoothing_length, std::uint8_t wall_face = 0);
+  void add(const Vec3& position, double enthalpy, double m, double smoothing_length,
+           std::uint8_t wall_face = 0);
   /// Dummy particle outside a box face: fills kernels, never moves or melts.
   bool is_wall(std::size_t i) const { return wall[i] != 0; }
   /// Saves or loads every array.

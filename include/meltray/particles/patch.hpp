@@ -14,12 +14,12 @@ namespace meltray {
 /// and costs nothing. Patch indices are valid until the next selection.
 struct Patch {
   int dim = 3;
-  std::vector<Index> global;          ///< patch index -> particle
-  std::vector<Index> cell_start;      ///< first patch index of each grid cell (cells() + 1 entries)
+  std::vector<Index> global;      ///< patch index -> particle
+  std::vector<Index> cell_start;  ///< first patch index of each grid cell (cells() + 1 entries)
   Components x, v;
   std::vector<double> h, mass, smoothing, pressure;
-  std::vector<std::uint8_t> liquid;   ///< 1 = liquid
-  std::vector<std::uint8_t> wall;     ///< 0, or 1 + index of the box face a dummy belongs to
+  std::vector<std::uint8_t> liquid;  ///< 1 = liquid
+  std::vector<std::uint8_t> wall;    ///< 0, or 1 + index of the box face a dummy belongs to
 
   Index size() const { return static_cast<Index>(global.size()); }
 };
@@ -41,7 +41,7 @@ class PatchSelector {
   /// solid ones next to them and of `also` then have all their neighbours in the patch.
   void select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch);
 
- /// Resting particles in the cells of `centres` and the cells next to them.
+  /// Resting particles in the cells of `centres` and the cells next to them.
   void select_resting_near(const Particles& particles, std::span<const Index> centres, Patch& patch);
   /// Resting and moving particles inside a box, by index.
   void gather(const Particles& particles, const Vec3& min, const Vec3& max, std::vector<Index>& out) const;

@@ -29,37 +29,39 @@ enum class ShapeKind { box, ball };
 /// One face of the box. A face where a workpiece was cropped is a wall: never a free surface.
 struct Face {
   FaceKind kind = FaceKind::free;
-  bool slip = false;                       ///< wall: false = no slip
-  Vec3 velocity = Vec3::Zero();            ///< of a moving wall [m/s]
+  bool slip = false;             ///< wall: false = no slip
+  Vec3 velocity = Vec3::Zero();  ///< of a moving wall [m/s]
   ThermalKind thermal = ThermalKind::adiabatic;
-  double temperature = 0;                  ///< [K], thermal = temperature
-  double flux = 0;                         ///< into the material [W/m^2], thermal = flux
+  double temperature = 0;  ///< [K], thermal = temperature
+  double flux = 0;         ///< into the material [W/m^2], thermal = flux
 };
 
-/// A body of material that fills part of the box at t = 0. Later bodies replace earlier ones where they overlap.
+/// A body of material that fills part of the box at t = 0. Later bodies replace earlier ones where they
+/// overlap.
 struct Body {
   ShapeKind shape = ShapeKind::box;
-  Vec3 min = Vec3::Zero(), max = Vec3::Zero();         ///< box [m]
-  Vec3 center = Vec3::Zero(), radii = Vec3::Zero();    ///< ball: semi-axes, so that an ellipsoid is a ball too [m]
-  double temperature = 300;                            ///< initial [K]
-  Vec3 velocity = Vec3::Zero();                        ///< initial [m/s]
+  Vec3 min = Vec3::Zero(), max = Vec3::Zero();  ///< box [m]
+  Vec3 center = Vec3::Zero(),
+       radii = Vec3::Zero();     ///< ball: semi-axes, so that an ellipsoid is a ball too [m]
+  double temperature = 300;      ///< initial [K]
+  Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
 };
 
 /// [domain]: box, particles, gravity.
 struct Domain {
-  int dimension = 3;                    ///< 2: the x-z plane; vectors of the scene are then (x, z, 0)
+  int dimension = 3;  ///< 2: the x-z plane; vectors of the scene are then (x, z, 0)
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();
-  double spacing = 0;                   ///< [m]
-  double smoothing_ratio = 1.3;         ///< h / spacing
+  double spacing = 0;            ///< [m]
+  double smoothing_ratio = 1.3;  ///< h / spacing
   KernelChoice kernel = KernelChoice::wendland_c2;
   Arrangement arrangement = Arrangement::lattice;
-  double jitter = 0;                    ///< displacement of the lattice points, fraction of the spacing
-  int seed = 1;                         ///< of the jitter
-  double gravity = 9.80665;             ///< downwards [m/s^2]
-  std::array<Face, 6> faces;            ///< x_min, x_max, y_min, y_max, z_min, z_max
+  double jitter = 0;          ///< displacement of the lattice points, fraction of the spacing
+  int seed = 1;               ///< of the jitter
+  double gravity = 9.80665;   ///< downwards [m/s^2]
+  std::array<Face, 6> faces;  ///< x_min, x_max, y_min, y_max, z_min, z_max
   std::vector<Body> bodies;
   VelocityField velocity_field = VelocityField::none;
-  double velocity_scale = 0;            ///< amplitude of velocity_field [m/s]
+  double velocity_scale = 0;  ///< amplitude of velocity_field [m/s]
 };
 
 /// [terms]: which effects exist in the scene.
@@ -72,69 +74,71 @@ struct Terms {
 /// [flow]: pressure projection, shifting, viscosities.
 struct Flow {
   Projection projection = Projection::step;
-  double pressure_tolerance = 1e-3;     ///< relative residual of the Poisson solve
+  double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
-  double drift_time = 0;                ///< in which errors of density are taken back [s]; 0: from the scene's speeds
-  double shifting = 0;                  ///< coefficient C of the shifting velocity; 0 = off
-  double shifting_speed = 0;            ///< least speed that shifting reckons with [m/s]
-  double reference_speed = 0;           ///< [m/s] of interface viscosity (sound speed of the WCSPH twin)
-  double interface_viscosity_free = 1;  ///< alpha_LG at the free surface
-  double interface_viscosity_solid = 1; ///< alpha_SL at the solid-liquid interface
-  double interface_viscosity_ramp = 50; ///< [K] above the melting point over which alpha_SL acts
+  double drift_time = 0;       ///< in which errors of density are taken back [s]; 0: from the scene's speeds
+  double shifting = 0;         ///< coefficient C of the shifting velocity; 0 = off
+  double shifting_speed = 0;   ///< least speed that shifting reckons with [m/s]
+  double reference_speed = 0;  ///< [m/s] of interface viscosity (sound speed of the WCSPH twin)
+  double interface_viscosity_free = 1;   ///< alpha_LG at the free surface
+  double interface_viscosity_solid = 1;  ///< alpha_SL at the solid-liquid interface
+  double interface_viscosity_ramp = 50;  ///< [K] above the melting point over which alpha_SL acts
 };
 
 /// [surface]: free surface, surface tension, recoil, evaporation.
 struct Surface {
   SurfaceEntry entry = SurfaceEntry::csf;
   RecoilOnset recoil_onset = RecoilOnset::smooth;
-  double recoil_coefficient = 0.54;     ///< of the saturation pressure
-  double evaporation_coefficient = 0.82;///< 1 - beta_r
-  double recoil_pressure = 0;           ///< > 0: prescribed uniform recoil [Pa] instead of p_sat (validation)
-  double recoil_ramp = 0;               ///< linear start of the prescribed recoil [s]
-  double activation_ramp = 20;          ///< [K] above the melting point over which surface tension sets in
-  double ambient_temperature = 300;     ///< [K] for radiation
+  double recoil_coefficient = 0.54;       ///< of the saturation pressure
+  double evaporation_coefficient = 0.82;  ///< 1 - beta_r
+  double recoil_pressure = 0;        ///< > 0: prescribed uniform recoil [Pa] instead of p_sat (validation)
+  double recoil_ramp = 0;            ///< linear start of the prescribed recoil [s]
+  double activation_ramp = 20;       ///< [K] above the melting point over which surface tension sets in
+  double ambient_temperature = 300;  ///< [K] for radiation
 };
 
 /// [heat]: conduction away from the melt.
 struct Heat {
-  double initial_temperature = 300;     ///< [K]
-  double bulk_interval = 0;             ///< > 0: pairs of solid particles away from the melt exchange heat at this interval [s]
+  double initial_temperature = 300;  ///< [K]
+  double bulk_interval =
+      0;  ///< > 0: pairs of solid particles away from the melt exchange heat at this interval [s]
 };
 
 /// [laser]: absent in scenes without one.
 struct Laser {
   laser::BeamSpec beam;
   laser::TraceOptions trace;
-  double retrace_interval = 5e-6;       ///< [s]
-  double retrace_motion = 0.5;          ///< retrace when a surface particle moved by this fraction of the spacing
+  double retrace_interval = 5e-6;  ///< [s]
+  double retrace_motion = 0.5;     ///< retrace when a surface particle moved by this fraction of the spacing
 };
 
 /// [time] and [splitting].
 struct Time {
-  double end = 0;                       ///< [s]
+  double end = 0;  ///< [s]
   IntegratorOptions integrator;
   double rtol = 1e-3;
-  double atol_position = 0.05;          ///< fraction of the spacing
-  double atol_velocity = 0.1;           ///< [m/s]
-  double atol_temperature = 5;          ///< [K], turned into enthalpy with the solid's heat capacity
+  double atol_position = 0.05;  ///< fraction of the spacing
+  double atol_velocity = 0.1;   ///< [m/s]
+  double atol_temperature = 5;  ///< [K], turned into enthalpy with the solid's heat capacity
   double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_force = 0.25;
-  double cfl_viscous = 0.8, cfl_thermal = 0.8;   ///< shares of the Gershgorin stability bound of explicit terms
-  double beam_travel = 0.25;            ///< of the focal radius per step
+  double cfl_viscous = 0.8,
+         cfl_thermal = 0.8;   ///< shares of the Gershgorin stability bound of explicit terms
+  double beam_travel = 0.25;  ///< of the focal radius per step
   PartitionChoice conduction = PartitionChoice::automatic, viscosity = PartitionChoice::automatic,
                   interface_viscosity = PartitionChoice::automatic, evaporation = PartitionChoice::automatic;
-  double linear_tolerance = 1e-6;       ///< of the implicit solves, relative
+  double linear_tolerance = 1e-6;  ///< of the implicit solves, relative
 };
 
 /// [output]
 struct Output {
-  double interval = 0;                  ///< of history.csv [s]
-  double snapshot_interval = 0;         ///< of particles/*.h5 [s]; 0 = start and end only
-  double checkpoint_interval = 0;       ///< [s]; 0 = end only
+  double interval = 0;             ///< of history.csv [s]
+  double snapshot_interval = 0;    ///< of particles/*.h5 [s]; 0 = start and end only
+  double checkpoint_interval = 0;  ///< [s]; 0 = end only
 };
 
 struct Scene {
   std::string title;
-  std::string model = "isph";           ///< row of Table 1
+  std::string model = "isph";  ///< row of Table 1
   Domain domain;
   Material material;
   Terms terms;

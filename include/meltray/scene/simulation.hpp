@@ -16,17 +16,17 @@
 namespace meltray::scene {
 
 /// Energy since t = 0 [J], each item accumulated where it happens. Closes when
-/// stored - initial = laser + boundary - evaporation - radiation - ejected - cropped - clamped (relative to the
-/// largest).
+/// stored - initial = laser + boundary - evaporation - radiation - ejected - cropped - clamped (relative to
+/// the largest).
 struct EnergyBudget {
-  double initial = 0, stored = 0;      ///< enthalpy of all particles still in the scene
-  double laser = 0;                    ///< absorbed by particles
-  double boundary = 0;                 ///< through faces with temperature or flux
+  double initial = 0, stored = 0;  ///< enthalpy of all particles still in the scene
+  double laser = 0;                ///< absorbed by particles
+  double boundary = 0;             ///< through faces with temperature or flux
   double evaporation = 0, radiation = 0;
-  double ejected = 0;                  ///< enthalpy of particles that left through a free face
-  double cropped = 0;                  ///< the same through a wall, where the workpiece was cropped
-  double clamped = 0;                  ///< taken away by limits on single particles (never silent)
-  double undeposited = 0;              ///< laser power that found no particle (counted, not part of `laser`)
+  double ejected = 0;      ///< enthalpy of particles that left through a free face
+  double cropped = 0;      ///< the same through a wall, where the workpiece was cropped
+  double clamped = 0;      ///< taken away by limits on single particles (never silent)
+  double undeposited = 0;  ///< laser power that found no particle (counted, not part of `laser`)
   double relative_error() const;
 };
 
@@ -36,17 +36,17 @@ struct EnergyBudget {
 struct MomentumBudget {
   Vec3 initial = Vec3::Zero(), current = Vec3::Zero();
   Vec3 gravity = Vec3::Zero(), surface = Vec3::Zero(), pressure = Vec3::Zero(), viscosity = Vec3::Zero();
-  Vec3 shifting = Vec3::Zero();       ///< of the convective correction of the shifted velocity
+  Vec3 shifting = Vec3::Zero();  ///< of the convective correction of the shifted velocity
   Vec3 phase_change = Vec3::Zero(), ejected = Vec3::Zero();
 };
 
 struct MassBudget {
   double initial = 0, current = 0, ejected = 0, cropped = 0;
-  double evaporated_not_removed = 0;   ///< what evaporation would have taken: reported, not removed
+  double evaporated_not_removed = 0;  ///< what evaporation would have taken: reported, not removed
 };
 
-/// Laser energy since t = 0 [J]: in = absorbed + escaped + residual + dropped. `worst` is the largest relative
-/// error of any single trace.
+/// Laser energy since t = 0 [J]: in = absorbed + escaped + residual + dropped. `worst` is the largest
+/// relative error of any single trace.
 struct LaserBudget {
   double in = 0, absorbed = 0, escaped = 0, residual = 0, dropped = 0, worst = 0;
   std::int64_t traces = 0, dropped_rays = 0;
@@ -57,7 +57,7 @@ struct Counters {
   std::int64_t pressure_solves = 0, pressure_iterations = 0, pressure_at_limit = 0;
   std::int64_t heat_iterations = 0, viscous_iterations = 0, list_builds = 0;
   std::int64_t liquid_particle_steps = 0, clamped = 0, removed = 0, ejected = 0;
-  std::map<std::string, std::int64_t> limiter;   ///< steps by what set their length
+  std::map<std::string, std::int64_t> limiter;  ///< steps by what set their length
 };
 
 /// What the laser did at the last trace [W].
@@ -74,7 +74,7 @@ struct StepInfo {
 struct TermInfo {
   std::string name;
   bool active = false;
-  std::string partition;   ///< "explicit", "implicit", "projected", "between steps", or why it is skipped
+  std::string partition;  ///< "explicit", "implicit", "projected", "between steps", or why it is skipped
 };
 
 /// A scene assembled into particles and terms, advanced in time.
@@ -92,7 +92,7 @@ class Simulation {
   StepInfo step(double t_stop);
 
   const Particles& particles() const;
-  Particles& particles();              ///< for initial conditions set in code, before the first step
+  Particles& particles();  ///< for initial conditions set in code, before the first step
   /// 1 where the particle is on the free surface (particles that were not looked at: 0).
   const std::vector<std::uint8_t>& on_surface() const;
   EnergyBudget energy() const;
@@ -105,17 +105,17 @@ class Simulation {
   const laser::Beam* beam() const;
   Counters counters() const;
   Timers& timers();
-  double evaporative_loss() const;     ///< [W] at the last step
+  double evaporative_loss() const;  ///< [W] at the last step
   std::size_t liquid_count() const;
-  std::size_t active_count() const;    ///< particles in the state vector
+  std::size_t active_count() const;  ///< particles in the state vector
   std::vector<TermInfo> terms() const;
   /// Every step limit of the current state: name -> seconds (before error control).
   std::vector<StepLimit> step_limits();
   /// Bytes held, by part.
   std::vector<std::pair<std::string, std::size_t>> memory() const;
 
-  /// Saves or loads the whole state. Saving drops everything that carries history (lists, warm starts, trees),
-  /// so that a run that goes on and one that resumes take the same path bit for bit.
+  /// Saves or loads the whole state. Saving drops everything that carries history (lists, warm starts,
+  /// trees), so that a run that goes on and one that resumes take the same path bit for bit.
   void archive(Archive& a);
 
  private:

@@ -21,12 +21,12 @@ void multiply(const SymmetricMatrix& a, const std::vector<double>& x, std::vecto
 
 struct SolveReport {
   int iterations = 0;
-  double residual = 0;   ///< |b - A x| / |b|, both in the norm of the inverse diagonal
+  double residual = 0;  ///< |b - A x| / |b|, both in the norm of the inverse diagonal
   bool converged = false;
 };
 
-/// Conjugate gradients with a diagonal preconditioner; bitwise independent of the number of threads. A singular
-/// consistent system (closed pockets) is solved in the range of A.
+/// Conjugate gradients with a diagonal preconditioner; bitwise independent of the number of threads. A
+/// singular consistent system (closed pockets) is solved in the range of A.
 class ConjugateGradient {
  public:
   /// Solves A x = b from the start vector in x.
@@ -39,6 +39,7 @@ class ConjugateGradient {
 
 /// Finds the connected groups of rows without any row of `anchored` > 0 and numbers them from 1 (0 = anchored
 /// group). Returns how many there are.
-int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored, std::vector<Index>& group);
+int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored,
+                        std::vector<Index>& group);
 
 }  // namespace meltray::solve

@@ -31,7 +31,9 @@ struct WendlandC2 {
   }
 
  private:
-  static double scale(double inv_h) { return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h; }
+  static double scale(double inv_h) {
+    return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h;
+  }
 };
 
 /// Cubic spline of support 2h: alpha [(2-q)^3 - 4 (1-q)^3] / 6 with alpha = 15/(7 pi h^2), 3/(2 pi h^3).
@@ -56,7 +58,9 @@ struct CubicSpline {
   }
 
  private:
-  static double scale(double inv_h) { return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h; }
+  static double scale(double inv_h) {
+    return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h;
+  }
 };
 
 /// Calls f(kernel) with the kernel's type for a dimension chosen at run time.

@@ -8,12 +8,13 @@ namespace meltray::sph {
 /// Kernel sums over a full square or cubic lattice: what a particle deep inside material sees. Sums over real
 /// neighbours are divided by these, so that "full" means 1 and missing neighbours can be told.
 struct LatticeSums {
-  double shepard = 1;      ///< sum of V W, the particle itself included
-  double laplacian = 1;    ///< sum of -V F [1/m^2]
-  double second_moment = 1;///< sum of -V F x^2 for one axis: the factor by which 2 sum V F f_ij misses a Laplacian
-  double face_gradient = 1;///< 2 |sum V F x| dx of the outermost layer of a flat face
-  double face_fill = 1;    ///< Shepard sum of that layer over `shepard`
-  double face_diagonal = 1;///< its Laplacian sum over `laplacian`
+  double shepard = 1;    ///< sum of V W, the particle itself included
+  double laplacian = 1;  ///< sum of -V F [1/m^2]
+  double second_moment =
+      1;  ///< sum of -V F x^2 for one axis: the factor by which 2 sum V F f_ij misses a Laplacian
+  double face_gradient = 1;  ///< 2 |sum V F x| dx of the outermost layer of a flat face
+  double face_fill = 1;      ///< Shepard sum of that layer over `shepard`
+  double face_diagonal = 1;  ///< its Laplacian sum over `laplacian`
 };
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing);

@@ -7,16 +7,16 @@
 namespace meltray::terms {
 
 /// Heat conduction among resting particles away from the melt, at an interval of its own. Every pair of
-/// particles belongs either to the state vector (both sides marked in `in_state`) or to this operator, so heat
-/// is conserved exactly across the boundary between them. Particles at rest thermally are not looked at.
+/// particles belongs either to the state vector (both sides marked in `in_state`) or to this operator, so
+/// heat is conserved exactly across the boundary between them. Particles at rest thermally are not looked at.
 class BulkConduction {
  public:
   /// Finds the resting particles that differ from `rest_temperature` by more than a millikelvin, their
   /// neighbours and their pair coefficients. Call again before heat has travelled a support radius.
   void build(const SceneConstants& constants, PatchSelector& selector, const Particles& particles,
              double rest_temperature);
-  /// Exchanges heat over `dt` by explicit steps below the stability limit. `in_state` has one entry per particle
-  /// of the store. Updates enthalpy and temperature of resting particles.
+  /// Exchanges heat over `dt` by explicit steps below the stability limit. `in_state` has one entry per
+  /// particle of the store. Updates enthalpy and temperature of resting particles.
   void exchange(const SceneConstants& constants, double dt, const std::vector<std::uint8_t>& in_state,
                 Particles& particles);
   std::size_t rows() const { return patch_.global.size(); }

@@ -7,19 +7,20 @@ namespace meltray::terms {
 
 /// Heat conduction, paper Eq. (4) first term, in enthalpy form after Cleary & Monaghan 1999:
 ///   m_i dh_i/dt = sum_j k_ij (T_i - T_j),  k_ij = V_i V_j 4 l_i l_j / (l_i + l_j) F_ij <= 0,
-/// divided by the kernel's second moment on a lattice. Pairs exchange what one loses and the other gains; only
-/// pairs with both sides in `stage.heat` count, plus isothermal walls with the temperature extrapolated so that
-/// the profile meets the wall value at the face.
+/// divided by the kernel's second moment on a lattice. Pairs exchange what one loses and the other gains;
+/// only pairs with both sides in `stage.heat` count, plus isothermal walls with the temperature extrapolated
+/// so that the profile meets the wall value at the face.
 class ConductionOperator {
  public:
   void assemble(const Stage& stage);
   /// Adds to dh/dt of heated particles; returns the power that walls put in [W].
   double add_heating(const Stage& stage, double* heating) const;
   /// Solves (I - gamma J) x = b for the heated particles with J = d(dh/dt)/dh frozen at the stage, plus
-  /// `local` = d(power of local losses)/dT <= 0 [W/K] per particle (may be null). One entry per patch particle;
-  /// x is overwritten. Returns iterations, or -1 without convergence (relative residual `tolerance`).
-  int solve(const Stage& stage, double gamma, const double* local, const double* b, double* x, double tolerance,
-            int max_iterations) const;
+  /// `local` = d(power of local losses)/dT <= 0 [W/K] per particle (may be null). One entry per patch
+  /// particle; x is overwritten. Returns iterations, or -1 without convergence (relative residual
+  /// `tolerance`).
+  int solve(const Stage& stage, double gamma, const double* local, const double* b, double* x,
+            double tolerance, int max_iterations) const;
   /// Largest row sum of -J [1/s].
   double rate(const Stage& stage) const;
   /// Derivative of the wall power with respect to a particle's temperature [W/K], for the exact Newton row.
@@ -28,7 +29,7 @@ class ConductionOperator {
 
  private:
   bool assembled_ = false;
-  std::vector<double> k_;                        ///< per pair; 0 where the pair does not exchange heat
+  std::vector<double> k_;  ///< per pair; 0 where the pair does not exchange heat
   std::vector<double> conductivity_, wall_slope_, wall_power_;
   mutable std::vector<double> r_, p_, ap_, inverse_diagonal_, capacity_, dt_;
 };

@@ -11,8 +11,8 @@ namespace meltray::terms {
 /// they have no neighbours. The mass is counted, not removed.
 struct SurfaceLosses {
   bool evaporation = false, radiation = false;
-  double coefficient = 0.82;          ///< 1 - beta_r
-  double ambient_temperature = 300;   ///< [K]
+  double coefficient = 0.82;         ///< 1 - beta_r
+  double ambient_temperature = 300;  ///< [K]
 
   /// Mass flux [kg/(m^2 s)] and its derivative with respect to T.
   double mass_flux(const Material& m, double temperature) const;

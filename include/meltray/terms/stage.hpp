@@ -13,10 +13,10 @@ namespace meltray::terms {
 
 /// A box face as the terms see it: dummies behind it carry its velocity and temperature.
 struct WallFace {
-  int axis = 0;            ///< component of the normal
-  double plane = 0;        ///< coordinate of the face [m]
+  int axis = 0;      ///< component of the normal
+  double plane = 0;  ///< coordinate of the face [m]
   bool no_slip = true;
-  Vec3 velocity = Vec3::Zero();   ///< [m/s]
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
   bool isothermal = false;
   double temperature = 0;  ///< [K]
   double flux = 0;         ///< into the material [W/m^2]
@@ -49,16 +49,15 @@ struct Stage {
   std::vector<std::uint8_t> lit;    ///< 1: receives laser power
   std::vector<Index> moving;        ///< patch indices of liquid particles, ascending
   std::vector<Index> heated;        ///< patch indices with heat = 1, ascending
-  std::vector<Index> wetted;        ///< liquid particles and their solid neighbours, ascending
 
   // Free surface (filled by compute_surface when a term needs it; zero elsewhere).
-  std::vector<double> fill;         ///< Shepard sum over that of a full lattice
-  std::vector<double> diagonal;     ///< Laplacian sum over that of a full lattice
-  std::vector<double> exposure;     ///< |grad c| over that of a flat face, at most 1
-  std::vector<double> surface;      ///< 1 on the free surface, 0 inside, continuous in between
-  Components grad_c;                ///< gradient of the colour function, into the material [1/m]
-  Components normal;                ///< unit normal out of the material (zero where surface = 0)
-  std::vector<double> area;         ///< free-surface area carried by a particle [m^2; m in 2-D]
+  std::vector<double> fill;              ///< Shepard sum over that of a full lattice
+  std::vector<double> diagonal;          ///< Laplacian sum over that of a full lattice
+  std::vector<double> exposure;          ///< |grad c| over that of a flat face, at most 1
+  std::vector<double> surface;           ///< 1 on the free surface, 0 inside, continuous in between
+  Components grad_c;                     ///< gradient of the colour function, into the material [1/m]
+  Components normal;                     ///< unit normal out of the material (zero where surface = 0)
+  std::vector<double> area;              ///< free-surface area carried by a particle [m^2; m in 2-D]
   std::vector<double> surface_pressure;  ///< recoil + sigma kappa, averaged over surface neighbours [Pa]
   std::vector<std::uint8_t> loose;  ///< liquid with too few neighbours to be a fluid: flies ballistically
 
@@ -72,9 +71,10 @@ void prepare_stage(Stage& stage);
 
 /// Finds the free surface: Shepard sum, colour gradient, continuous surface weight, normals and areas, for
 /// every row of the list. A particle of a flat face has a Shepard sum near 0.79 (h = 1.3 dx), one layer below
-/// it 0.997, so a weight that falls from 1 at 0.86 to 0 at 0.94 tells them apart without a jump in time. Recoil
-/// can press the outermost layer together until its Shepard sum is full; the colour gradient (exposure 1 on a flat
-/// face, 0.06 below it, under 0.2 in disordered bulk) still shows it, so either of the two makes a surface.
+/// it 0.997, so a weight that falls from 1 at 0.86 to 0 at 0.94 tells them apart without a jump in time.
+/// Recoil can press the outermost layer together until its Shepard sum is full; the colour gradient (exposure
+/// 1 on a flat face, 0.06 below it, under 0.2 in disordered bulk) still shows it, so either of the two makes
+/// a surface.
 void compute_surface(Stage& stage);
 
 }  // namespace meltray::terms

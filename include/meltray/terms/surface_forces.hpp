@@ -8,10 +8,10 @@ namespace meltray::terms {
 /// Surface tension (normal part), continuum surface force: pressure jump sigma(T) kappa. The curvature of a
 /// particle is the least-squares slope of its neighbours' normals over their offsets in the tangent plane,
 ///   kappa_i = (D-1) sum_j w_ij (n_j - n_i).t_ij / sum_j w_ij |t_ij|^2,
-/// which is exact where the normals are those of a sphere, unlike the usual sum over all offsets, which counts
-/// the offset along the normal as well (1.4 times too large on a thin band).
+/// which is exact where the normals are those of a sphere, unlike the usual sum over all offsets, which
+/// counts the offset along the normal as well (1.4 times too large on a thin band).
 struct SurfaceTension {
-  double ramp = 20;   ///< [K] above melting over which tension sets in, so that a fresh particle is not kicked
+  double ramp = 20;  ///< [K] above melting over which tension sets in, so that a fresh particle is not kicked
   /// sigma_i kappa_i [Pa] of liquid surface particles, 0 elsewhere; one entry per patch particle.
   void pressure(const Stage& stage, std::vector<double>& out) const;
   double activation(const Stage& stage, Index i) const;
@@ -39,7 +39,8 @@ enum class RecoilOnset { smooth, cutoff, ambient };
 struct Recoil {
   RecoilOnset onset = RecoilOnset::smooth;
   double coefficient = 0.54;
-  double prescribed = 0, prescribed_ramp = 0;   ///< > 0: uniform pressure [Pa] reached after a linear start [s]
+  double prescribed = 0,
+         prescribed_ramp = 0;  ///< > 0: uniform pressure [Pa] reached after a linear start [s]
   double pressure(const Material& m, double temperature, double t) const;
 };
 
@@ -52,10 +53,11 @@ struct Marangoni {
   void add_acceleration(const Stage& stage, const MutField& acceleration) const;
 };
 
-/// Gravity with the Boussinesq approximation, paper Eq. (8): a = g (1 - beta (T - T_0)); beta = 0: plain gravity.
+/// Gravity with the Boussinesq approximation, paper Eq. (8): a = g (1 - beta (T - T_0)); beta = 0: plain
+/// gravity.
 struct Buoyancy {
   bool gravity = true, buoyant = false;
-  double g = 9.80665;   ///< [m/s^2], acts along -z
+  double g = 9.80665;  ///< [m/s^2], acts along -z
   void add_acceleration(const Stage& stage, const MutField& acceleration) const;
 };
 

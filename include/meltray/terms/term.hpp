@@ -11,8 +11,8 @@ namespace meltray::terms {
 
 /// Rates per patch particle that terms add to; a null pointer means that the field is not evolved.
 struct Rates {
-  MutField acceleration{};      ///< [m/s^2]
-  double* heating = nullptr;    ///< dh/dt [W/kg]
+  MutField acceleration{};    ///< [m/s^2]
+  double* heating = nullptr;  ///< dh/dt [W/kg]
 };
 
 /// What crosses the boundary of the system or changes the melt's momentum, integrated as part of the state so

@@ -12,18 +12,20 @@ struct ViscousChoice {
 };
 
 struct InterfaceViscosityParameters {
-  double free = 1, solid = 1;      ///< alpha_LG at the free surface, alpha_SL at the solid
-  double reference_speed = 0;      ///< c [m/s]
-  double ramp = 50;                ///< [K] above melting over which alpha_SL fades out
+  double free = 1, solid = 1;  ///< alpha_LG at the free surface, alpha_SL at the solid
+  double reference_speed = 0;  ///< c [m/s]
+  double ramp = 50;            ///< [K] above melting over which alpha_SL fades out
 };
 
-/// Viscous accelerations a_i = (1/m_i) sum_j [c_ij v_ij' + d_ij (v_ij.x_ij) x_ij] with symmetric c, d <= 0, so
-/// that the operator -M is symmetric positive semi-definite and momentum is conserved between moving particles.
+/// Viscous accelerations a_i = (1/m_i) sum_j [c_ij v_ij' + d_ij (v_ij.x_ij) x_ij] with symmetric c, d <= 0,
+/// so that the operator -M is symmetric positive semi-definite and momentum is conserved between moving
+/// particles.
 ///
 /// Physical viscosity, paper Eq. (3) second term in the form of Morris et al. 1997:
 ///   c_ij = 2 V_i V_j mu_ij F_ij, mu_ij the harmonic mean, walls with the antisymmetric extrapolation of
 ///   Morris 1997 (no slip).
-/// Interface viscosity, Meier et al. 2021: d_ij = alpha_ij V_i V_j rho h c F_ij / (r^2 + 0.01 h^2), for approach
+/// Interface viscosity, Meier et al. 2021: d_ij = alpha_ij V_i V_j rho h c F_ij / (r^2 + 0.01 h^2), for
+/// approach
 ///   and separation, with alpha_i = |grad c_i| h alpha_LG + ramp(T_i) alpha_SL. The published form uses
 ///   alpha_i alone; alpha_ij = (alpha_i + alpha_j)/2 is used here because it conserves momentum and makes the
 ///   implicit operator symmetric.
@@ -48,7 +50,7 @@ class ViscousOperator {
   void for_rows(const Stage& stage, const ConstField& u, F&& f) const;
 
   ViscousChoice choice_;
-  std::vector<double> c_, d_;     ///< per pair
+  std::vector<double> c_, d_;  ///< per pair
   std::vector<double> alpha_, mu_;
   mutable Components r_, p_, ap_;
   mutable std::vector<double> inverse_diagonal_;

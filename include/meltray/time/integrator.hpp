@@ -50,23 +50,23 @@ enum class Method { euler, imex, explicit_rk, implicit_rk, multirate };
 
 struct IntegratorOptions {
   Method method = Method::imex;
-  int order = 2;             ///< imex 2 to 5, explicit_rk 2 to 5, implicit_rk 2 to 5; euler is 1
-  double fixed_step = 0;     ///< > 0: constant step without error control [s]
-  double initial_step = 0;   ///< first step [s]; 0: chosen from the stability limit
-  double max_step = 1e300;   ///< [s]
-  double min_step = 1e-14;   ///< below this the run fails: NumericalFailure [s]
-  double safety = 0.9;       ///< of the step controller
-  double max_growth = 2.0;   ///< from one step to the next
+  int order = 2;            ///< imex 2 to 5, explicit_rk 2 to 5, implicit_rk 2 to 5; euler is 1
+  double fixed_step = 0;    ///< > 0: constant step without error control [s]
+  double initial_step = 0;  ///< first step [s]; 0: chosen from the stability limit
+  double max_step = 1e300;  ///< [s]
+  double min_step = 1e-14;  ///< below this the run fails: NumericalFailure [s]
+  double safety = 0.9;      ///< of the step controller
+  double max_growth = 2.0;  ///< from one step to the next
 };
 
 /// What one accepted step did.
 struct StepReport {
-  double t = 0;              ///< time reached [s]
-  double dt = 0;             ///< its length [s]
-  double error = 0;          ///< weighted norm of the local error estimate (0 without error control)
-  int rejected = 0;          ///< attempts thrown away before it
-  /// What set dt: a StepLimit name, "error", "growth" (max_growth), "maximum", "output" (cut to end on t_stop),
-  /// "fixed", "initial", or "retry" (halved after NaN or a failed implicit solve).
+  double t = 0;      ///< time reached [s]
+  double dt = 0;     ///< its length [s]
+  double error = 0;  ///< weighted norm of the local error estimate (0 without error control)
+  int rejected = 0;  ///< attempts thrown away before it
+  /// What set dt: a StepLimit name, "error", "growth" (max_growth), "maximum", "output" (cut to end on
+  /// t_stop), "fixed", "initial", or "retry" (halved after NaN or a failed implicit solve).
   std::string_view limiter;
 };
 

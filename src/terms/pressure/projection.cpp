@@ -63,8 +63,9 @@ void Projection::assemble(const Stage& s) {
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });
-  // A component hangs on the free surface only if some row has a fair share of a flat face's ghost weight; the
-  // mean of the source would else leave through one weak row. Without that, the component is a closed pocket.
+  // A component hangs on the free surface only if some row has a fair share of a flat face's ghost weight;
+  // the mean of the source would else leave through one weak row. Without that, the component is a closed
+  // pocket.
   anchor_.resize(rows);
   for (Index r = 0; r < rows; ++r) {
     const double fair = kAnchor * (1 - lattice.face_diagonal) * full * s.volume[particle_of_[r]];
@@ -127,8 +128,8 @@ void Projection::compression(const Stage& s, std::vector<double>& out) const {
   const double open = 1 - s.constants->lattice.face_fill;
   parallel_for(rows(), [&](Index r) {
     const Index i = particle_of_[r];
-    // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything emptier
-    // than that is shape, not density.
+    // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything
+    // emptier than that is shape, not density.
     const double excess = s.fill[i] + open * s.exposure[i] - 1;
     const bool inside = s.surface[i] == 0 && s.fill[i] > 0.97;
     out[r] = s.patch->wall[i] ? 0.0 : inside ? s.fill[i] - 1 : std::max(0.0, excess - kTolerated);

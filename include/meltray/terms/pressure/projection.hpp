@@ -7,7 +7,8 @@
 namespace meltray::terms {
 
 /// How the surface pressure q (recoil + sigma kappa) meets the pressure field.
-///   csf: the continuum surface force 2 q grad c / rho acts on the particles of the surface layer, against the
+///   csf: the continuum surface force 2 q grad c / rho acts on the particles of the surface layer, against
+///   the
 ///        surface part 2 p grad c / rho of the pressure gradient of Eq. (3);
 ///   pressure: q is only the boundary value of p, and the gradient is the renormalised difference form.
 enum class SurfaceEntry { csf, pressure };
@@ -37,7 +38,8 @@ class Projection {
   void compression(const Stage& stage, std::vector<double>& out) const;
   /// Solves for p with div(grad p / rho) = source (one entry per row), warm-started from and stored to the
   /// patch's pressure. Components without a free surface get the mean-zero solution.
-  solve::SolveReport solve(const Stage& stage, const std::vector<double>& source, const ProjectionOptions& options);
+  solve::SolveReport solve(const Stage& stage, const std::vector<double>& source,
+                           const ProjectionOptions& options);
   /// Adds -grad p / rho (and the surface force of the csf entry) of moving particles.
   void add_acceleration(const Stage& stage, SurfaceEntry entry, const MutField& acceleration) const;
   const solve::SymmetricMatrix& matrix() const { return matrix_; }

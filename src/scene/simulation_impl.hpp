@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "meltray/core/errors.hpp"
+#include "meltray/scene/simulation.hpp"
+#include "meltray/terms/bulk_conduction.hpp"
+#include "scene/build.hpp"
+#include "scene/laser_coupling.hpp"
+#include "scene/model.hpp"
+
+namespace meltray::scene {
+
+/// Share of the spacing by which lists reach beyond the support: where lists are kept while particles move,
+/// and where they are built anew for every step (only what enters the edge of the support during a step is
+/// missed).
+inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05;
+inline double skin(const Scene& scene) {
+  return scene.heat.bulk_interval > 0 ? kSkinOfStep : kSkin;
+}
+
+/// State of a simulation; its steps are in simulation.cpp, what it reports and saves in
+/// simulation_report.cpp.
+struct Simulation::Impl {
+  explicit Impl(Scene s)
+      : scene(std::move(s)),
+        constants(build_constants(scene)),
+        particles(build_particles(scene, constants)),
+        selector(build_grid(scene, constants, skin(scene) * constants.spacing), particles),
+        model(scene, constants, timers),
+        integrator(scene.time.integrator) {
+    model.counters = &counters;
+    if (scene.laser) laser.emplace(scene, constants);
+    if (scene.heat.bulk_interval > 0 && constants.any_isothermal)
+      throw UsageError(
+          "heat.bulk_interval_s: found > 0 with a face that holds a temperature; allowed: 0 in such a scene");
+    on_surface.assign(particles.size(), 0);
+    in_state.assign(particles.size(), 0);
+    next_bulk = scene.heat.bulk_interval;
+  }
+
+  void begin();
+  void select();
+  void finish_patch();
+  StepInfo step(double t_stop);
+  void check(const StepReport& report);
+  void book(const StepReport& report);
+  void change_phases(double dt);
+  void remove_escaped();
+  void exchange_bulk(double until);
+  double stored_energy() const;
+  Vec3 liquid_momentum() const;
+
+  Scene scene;
+  terms::SceneConstants constants;
+  Timers timers;
+  Particles particles;
+  PatchSelector selector;
+  Model model;
+  Integrator integrator;
+  std::optional<LaserCoupling> laser;
+  terms::BulkConduction bulk;
+  std::int64_t bulk_exchanges = 0;
+  double time = 0, next_bulk = 0, bulk_from = 0, last_dt = 0, evaporative_loss = 0;
+  bool begun = false, lists_valid = false;
+  double list_motion = 0;
+
+  std::vector<double> y;
+  std::vector<StateField> fields;
+  std::vector<std::uint8_t> on_surface, in_state, extra;
+  std::vector<Index> in_state_list, surface_list;
+  Counters counters;
+  EnergyBudget energy;
+  MomentumBudget momentum;
+  MassBudget mass;
+};
+
+}  // namespace meltray::scene
