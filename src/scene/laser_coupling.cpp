@@ -24,9 +24,8 @@ laser::TraceOptions options_of(const Scene& scene) {
 LaserCoupling::LaserCoupling(const Scene& scene, const terms::SceneConstants& constants)
     : scene_(scene), constants_(constants), beam_(scene.laser->beam) {}
 
-bool LaserCoupling::due(double t, double largest_motion) const {
-  return stale_ || t >= next_trace_ ||
-         motion_ + largest_motion > scene_.laser->retrace_motion * constants_.spacing;
+bool LaserCoupling::due(double t) const {
+  return stale_ || t >= next_trace_ || motion_ > scene_.laser->retrace_motion * constants_.spacing;
 }
 
 laser::Box LaserCoupling::region(double t, const Particles& particles, const PatchSelector& selector) const {
@@ -59,7 +58,6 @@ laser::Box LaserCoupling::region(double t, const Particles& particles, const Pat
 void LaserCoupling::trace(double t, const PatchSelector& selector, const Particles& particles) {
   stale_ = false;
   motion_ = 0;
-  traced_at_ = t;
   next_trace_ = t + scene_.laser->retrace_interval;
   const laser::Box box = region(t, particles, selector);
   const double beyond = 3 * constants_.spacing;

@@ -16,7 +16,7 @@ class LaserCoupling {
   LaserCoupling(const Scene& scene, const terms::SceneConstants& constants);
 
   /// True where a trace is due: the interval has passed, the surface or the beam has moved, or none was made.
-  bool due(double t, double largest_motion) const;
+  bool due(double t) const;
   /// Reconstructs the surface around the beam and traces the rays.
   void trace(double t, const PatchSelector& selector, const Particles& particles);
   /// Power per patch particle [W]; hits sit on the surface and pass to the particles that are there now.
@@ -32,7 +32,6 @@ class LaserCoupling {
   const LaserBudget& budget() const { return budget_; }
   LaserState state(double t) const;
   double undeposited() const { return undeposited_; }  ///< [W] at the last deposit
-  double motion_budget() const { return motion_; }
   void add_motion(double m) { motion_ += m; }
   /// Saving and loading force a new trace at the next step.
   void archive(Archive& a);
@@ -48,7 +47,7 @@ class LaserCoupling {
   laser::Ledger ledger_;
   LaserBudget budget_;
   std::vector<Index> lit_;
-  double next_trace_ = 0, motion_ = 0, traced_at_ = 0, undeposited_ = 0;
+  double next_trace_ = 0, motion_ = 0, undeposited_ = 0;
   bool stale_ = true;
   std::vector<double> weight_, cloud_power_, cx_[3];
   std::vector<Index> cloud_;

@@ -94,7 +94,7 @@ void Simulation::Impl::select() {
 
 StepInfo Simulation::Impl::step(double t_stop) {
   begin();
-  if (laser && laser->due(time, 0.0)) {
+  if (laser && laser->due(time)) {
     const auto timer = timers.measure(Part::laser);
     const bool first = laser->lit().empty();
     laser->trace(time, selector, particles);
