@@ -121,6 +121,9 @@ std::vector<StepLimit> Model::step_limits() {
   const Time& time = scene_.time;
   const double h = constants_.smoothing, rho = constants_.density;
   const auto moving = static_cast<std::ptrdiff_t>(stage.moving.size());
+  // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
+  if (flows() && scene_.flow.projection == Projection::stage)
+    limits.push_back({divergence_time, "divergence"});
   if (flows() && moving > 0) {
     const double speed = parallel_max(moving, 0.0, [&](std::ptrdiff_t k) {
       const Index i = stage.moving[k];
@@ -134,8 +137,6 @@ std::vector<StepLimit> Model::step_limits() {
       const double sigma = constants_.material.sigma(constants_.melting_temperature());
       limits.push_back({time.cfl_capillary * std::sqrt(rho * h * h * h / (2 * M_PI * sigma)), "capillary"});
     }
-    // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
-    if (scene_.flow.projection == Projection::stage) limits.push_back({divergence_time, "divergence"});
     if (largest_acceleration > 0)
       limits.push_back({time.cfl_force * std::sqrt(h / largest_acceleration), "force"});
     if (viscous(false).any()) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/solve/conjugate_gradient.hpp"
 
-
 namespace meltray::solve {
 
 namespace {

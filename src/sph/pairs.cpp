@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace meltray::sph {
 
@@ -43,6 +45,7 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
       }
       block.candidate_h.resize(n);
       block.r2.resize(n);
+      block.near.assign((n + 7) / 8 * 8, 0);  // whole words
       for (Index k = 0; k < n; ++k) block.candidate_h[k] = patch.smoothing[block.candidate[k]];
 
       for (Index i = first; i < last; ++i) {
@@ -52,6 +55,11 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
         for (int c = 0; c < dim; ++c) {
           const double xi = patch.x[c][i], length = period_[c], inverse = inverse_period[c];
           const double* const xj = block.candidate_x[c].data();
+          if (length == 0) {
+#pragma omp simd
+            for (Index k = 0; k < n; ++k) r2[k] += (xi - xj[k]) * (xi - xj[k]);
+            continue;
+          }
 #pragma omp simd
           for (Index k = 0; k < n; ++k) {
             double d = xi - xj[k];
@@ -59,15 +67,27 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
             r2[k] += d * d;
           }
         }
-        const double hi = patch.smoothing[i];
+        // One byte a candidate, eight of them looked at together: nine of ten are too far away.
+        const double reach_of_i = patch.smoothing[i] + skin;
+        const double* const hj = block.candidate_h.data();
+        std::uint8_t* const near = block.near.data();
+#pragma omp simd
+        for (Index k = 0; k < n; ++k) {
+          const double reach = reach_of_i + hj[k];
+          near[k] = r2[k] < reach * reach;
+        }
         const std::size_t before = block.entries.size();
         block.entries.resize(before + n);
-        Index* out = block.entries.data() + before;
+        Index* const out = block.entries.data() + before;
         Index found = 0;
-        for (Index k = 0; k < n; ++k) {
-          const double reach = hi + block.candidate_h[k] + skin;
-          out[found] = block.candidate[k];
-          found += (r2[k] < reach * reach) & (block.candidate[k] != i);
+        for (Index first_of_eight = 0; first_of_eight < n; first_of_eight += 8) {
+          std::uint64_t eight;
+          std::memcpy(&eight, near + first_of_eight, 8);
+          for (; eight != 0; eight &= eight - 1) {
+            const Index j = block.candidate[first_of_eight + std::countr_zero(eight) / 8];
+            out[found] = j;
+            found += j != i;
+          }
         }
         block.entries.resize(before + found);
         block.row.push_back(i);

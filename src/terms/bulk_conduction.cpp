@@ -63,8 +63,8 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
           if (f == 0) continue;
           neighbour_[out] = j;
           // Rounded alike for (i, j) and (j, i), so that heat stays exact.
-          k_[out++] = static_cast<float>(conduction_coefficient(vi, patch_.mass[j] / constants.density, li,
-                                                                lambda_[j], scale * f));
+          k_[out++] = static_cast<float>(
+              conduction_coefficient(vi, patch_.mass[j] / constants.density, li, lambda_[j], scale * f));
         }
         row_end_[i] = out;
       });

@@ -75,7 +75,8 @@ double ConductionOperator::rate(const Stage& s) const {
   const auto& material = s.constants->material;
   return parallel_max(static_cast<std::ptrdiff_t>(s.heated.size()), 0.0, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
-    return -(wall_slope_[i] + row_sum(*s.pairs, i)) / s.patch->mass[i] * material.temperature_slope(s.patch->h[i]);
+    return -(wall_slope_[i] + row_sum(*s.pairs, i)) / s.patch->mass[i] *
+           material.temperature_slope(s.patch->h[i]);
   });
 }
 

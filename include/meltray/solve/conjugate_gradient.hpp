@@ -45,8 +45,8 @@ struct CgVectors {
 
 /// Conjugate gradients for a symmetric positive definite A that exists as `apply(i, in)`, row i of A times
 /// `in` (D arrays), with a diagonal preconditioner; row_of(k) for k in [0, rows) names the rows. Solves A x =
-/// v.r from the start vector in x until |b - A x| <= tolerance |b| in the norm of the inverse diagonal. Bitwise
-/// independent of the number of threads. A singular consistent system is solved in the range of A.
+/// v.r from the start vector in x until |b - A x| <= tolerance |b| in the norm of the inverse diagonal.
+/// Bitwise independent of the number of threads. A singular consistent system is solved in the range of A.
 template <int D, class RowOf, class Apply>
 SolveReport conjugate_gradient(std::ptrdiff_t rows, RowOf&& row_of, Apply&& apply, CgVectors<D>& v,
                                const std::array<double*, D>& x, double tolerance, int max_iterations) {

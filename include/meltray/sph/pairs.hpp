@@ -42,7 +42,8 @@ class PairList {
   /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
   /// while particles move by less than half of it.
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
-  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours only.
+  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours
+  /// only.
   void refresh(const Patch& patch, KernelType kernel);
 
   Index rows() const { return static_cast<Index>(start_.size()) - 1; }
@@ -125,6 +126,7 @@ class PairList {
     std::vector<Index> candidate;
     Components candidate_x;
     std::vector<double> candidate_h, r2;
+    std::vector<std::uint8_t> near;  ///< 1 = within reach, of one row at a time
   };
   void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
 
