@@ -121,13 +121,23 @@ class PairList {
   }
 
  private:
+  /// Rows of some consecutive cells and what their search needs. Distances are tested in single precision,
+  /// relative to the cell, with a margin: pairs beyond the support have weight 0 and do no harm.
   struct Block {
-    std::vector<Index> row, count, entries;
+    std::vector<Index> row, count;
+    std::vector<Index> entries;  ///< neighbours of the rows, one after the other; `used` of them
+    std::size_t used = 0;
     std::vector<Index> candidate;
-    Components candidate_x;
-    std::vector<double> candidate_h, r2;
+    std::array<std::vector<float>, 3> candidate_x;
+    std::vector<float> candidate_h;
     std::vector<std::uint8_t> near;  ///< 1 = within reach, of one row at a time
   };
+  template <int D>
+  void gather_candidates(const Patch& patch, const CellGrid& grid, Index cell, Block& block) const;
+  template <int D>
+  void search_row(const Patch& patch, Index i, Index origin, double skin, Block& block) const;
+  template <int D, class Kernel, bool Periodic>
+  void refresh_rows(const Patch& patch);
   void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
 
   int dim_ = 3;
