@@ -5,16 +5,27 @@ namespace meltray::app {
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases = {
-      {"fresnel_angles", "absorptance over the angle: formula, traced plate, beam at 10 degrees",
+      {1, "fresnel_angles", "absorptance over the angle: formula, traced plate, beam at 10 degrees",
        fresnel_angles},
-      {"wedge_absorption", "multiple reflections in a wedge: flat facets and a wedge of particles",
+      {1, "wedge_absorption", "multiple reflections in a wedge: flat facets and a wedge of particles",
        wedge_absorption},
-      {"stefan_two_phase_iron", "melting of solid iron at a hot wall: front and temperatures (Neumann)",
+      {1, "gouffe_cavity", "matt cavities: absorptance against radiosity and Gouffe's formula",
+       gouffe_cavity},
+      {1, "stefan_one_phase", "melting at the melting point from a hot wall, St 0.041 to 2.85: front",
+       stefan_one_phase},
+      {1, "stefan_two_phase_iron", "melting of solid iron at a hot wall: front and temperatures (Neumann)",
        stefan_two_phase_iron},
-      {"taylor_green", "decaying vortices in a periodic box at Re 100: decay, velocity and pressure field",
+      {1, "stefan_two_phase_aluminium", "the same for aluminium", stefan_two_phase_aluminium},
+      {1, "surface_flux", "constant flux on a half-space: temperature of the surface", surface_flux},
+      {1, "rosenthal", "moving point source on a half-space: temperature behind it", rosenthal},
+      {2, "poiseuille_startup", "start of the flow between plates under its weight", poiseuille_startup},
+      {2, "couette_startup", "start of the flow between plates of which one moves", couette_startup},
+      {2, "taylor_green", "decaying vortices in a periodic box at Re 100: decay, velocity and pressure field",
        taylor_green},
-      {"laplace_drop", "drop at rest: Laplace pressure and spurious currents", laplace_drop},
-      {"recoil_flat_plate", "pool at rest under a uniform recoil pressure: pressure, wall force, rest",
+      {1, "laplace_drop", "drop at rest: Laplace pressure and spurious currents", laplace_drop},
+      {1, "oscillating_drop", "second mode of a drop: Rayleigh's frequency, damping", oscillating_drop},
+      {1, "contact_angle", "drop on a plane: angle, height and base", contact_angle},
+      {1, "recoil_flat_plate", "pool at rest under a uniform recoil pressure: pressure, wall force, rest",
        recoil_flat_plate},
   };
   return cases;
