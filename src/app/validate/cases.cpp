@@ -25,8 +25,14 @@ const std::vector<ValidationCase>& validation_cases() {
       {1, "laplace_drop", "drop at rest: Laplace pressure and spurious currents", laplace_drop},
       {1, "oscillating_drop", "second mode of a drop: Rayleigh's frequency, damping", oscillating_drop},
       {1, "contact_angle", "drop on a plane: angle, height and base", contact_angle},
+      {1, "marangoni_cavity", "thermocapillary flow in a shallow layer: profile in the middle",
+       marangoni_cavity},
       {1, "recoil_flat_plate", "pool at rest under a uniform recoil pressure: pressure, wall force, rest",
        recoil_flat_plate},
+      {2, "natural_convection", "heated square cavity, Ra 1e3 to 1e5: Nusselt number, speeds",
+       natural_convection},
+      {2, "gallium_melting", "melting from a hot wall with convection: liquid share and front over time",
+       gallium_melting},
   };
   return cases;
 }

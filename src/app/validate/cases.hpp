@@ -39,6 +39,9 @@ Rows taylor_green(const Setting& setting);
 Rows laplace_drop(const Setting& setting);
 Rows oscillating_drop(const Setting& setting);
 Rows contact_angle(const Setting& setting);
+Rows marangoni_cavity(const Setting& setting);
+Rows natural_convection(const Setting& setting);
+Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
 
 }  // namespace meltray::app

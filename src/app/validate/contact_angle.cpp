@@ -17,6 +17,7 @@ struct Sessile {
   double height = 0, base = 0;  ///< [m]
   double degrees = 0;           ///< angle to the plane
   double speed = 0;             ///< largest, over sigma / mu
+  double area = 0;              ///< of all particles [m^2]
   double seconds = 0;
 };
 
@@ -25,7 +26,7 @@ struct Sessile {
 Sessile segment(double degrees, double area) {
   const double theta = degrees * kDegree;
   const double radius = std::sqrt(area / (theta - std::sin(theta) * std::cos(theta)));
-  return {radius * (1 - std::cos(theta)), 2 * radius * std::sin(theta), degrees, 0, 0};
+  return {radius * (1 - std::cos(theta)), 2 * radius * std::sin(theta), degrees};
 }
 
 /// The circle x^2 + z^2 = 2 a x + 2 b z + c through the outermost particles above the lowest two layers, by
@@ -43,7 +44,7 @@ Sessile fit(const scene::Simulation& simulation) {
   }
   const Eigen::Vector3d abc = normal.ldlt().solve(right);
   const double z = abc[1], radius = std::sqrt(abc[2] + abc[0] * abc[0] + z * z) + 0.5 * spacing;
-  return {z + radius, 2 * std::sqrt(radius * radius - z * z), std::acos(-z / radius) / kDegree, 0, 0};
+  return {z + radius, 2 * std::sqrt(radius * radius - z * z), std::acos(-z / radius) / kDegree};
 }
 
 Sessile run(const Setting& setting, double degrees, double spacing, double end) {
@@ -54,6 +55,8 @@ Sessile run(const Setting& setting, double degrees, double spacing, double end) 
   Sessile out = fit(*simulation);
   const Material& m = simulation->scene().material;
   out.speed = rms_speed(simulation->particles()) * m.viscosity(400) / m.sigma(400);
+  for (std::size_t i = 0; i < simulation->particles().size(); ++i)
+    if (!simulation->particles().is_wall(i)) out.area += spacing * spacing;
   out.seconds = watch.seconds();
   return out;
 }
@@ -63,16 +66,19 @@ Sessile run(const Setting& setting, double degrees, double spacing, double end) 
 Rows contact_angle(const Setting& setting) {
   const std::vector<double> angles =
       setting.small ? std::vector<double>{90} : std::vector<double>{30, 90, 120};
-  const std::vector<double> spacings =
-      setting.small ? std::vector<double>{0.08} : std::vector<double>{0.08, 0.04, 0.02};
+  const std::vector<double> across =
+      setting.small ? std::vector<double>{20} : std::vector<double>{20, 30, 40};
   Rows rows;
   for (const double degrees : angles) {
+    std::vector<double> spacings;
     Rows fitted, heights, bases;
-    for (const double spacing : spacings) {
-      const Sessile drop = run(setting, degrees, spacing, setting.small ? 5 : 20);
-      const Sessile exact = segment(degrees, 1);
-      const Measured how{fmt::format("base/dx {:.0f}", exact.base / spacing), drop.seconds,
-                         "segment of a disc"};
+    for (const double count : across) {
+      const double spacing = segment(degrees, 1).base / count;
+      spacings.push_back(spacing);
+      const Sessile drop = run(setting, degrees, spacing, setting.small ? 4 : 8);
+      // Of the particles' area, which differs a little from that of the half disc they fill.
+      const Sessile exact = segment(degrees, drop.area);
+      const Measured how{fmt::format("base/dx {}", count), drop.seconds, "segment of a disc"};
       fitted.push_back(absolute_row(fmt::format("{} deg: angle of the fitted circle [deg]", degrees),
                                     drop.degrees, degrees, 5, how));
       fitted.back().goal = 4;

@@ -64,7 +64,8 @@ MeltedStrip melt_strip(const Setting& setting, double spacing, double end, scene
     if (!p.is_wall(i))
       result.front += scene.material.liquid_fraction(p.h[i]) * p.mass[i] / (scene.material.density * height);
   const double initial = scene.domain.bodies[0].temperature;
-  const Neumann exact = neumann(scene, initial < scene.material.solidus ? initial : melting_point(scene.material));
+  const Neumann exact =
+      neumann(scene, initial < scene.material.solidus ? initial : melting_point(scene.material));
   result.exact_front = exact.front(end);
   measure_profile(*simulation, exact, result);
   result.budget = simulation->energy().relative_error();

@@ -88,7 +88,7 @@ Rows oscillating_drop(const Setting& setting) {
     const char *name, *metal;
     std::vector<int> per_radius;
   };
-  std::vector<Variant> variants = {{"Fe 2-D", "iron", {10, 20, 40}}, {"Al 2-D", "aluminium", {10, 20}}};
+  std::vector<Variant> variants = {{"Fe 2-D", "iron", {10, 15, 20}}, {"Al 2-D", "aluminium", {10, 15, 20}}};
   if (setting.small) variants = {{"Fe 2-D", "iron", {10}}};
   Rows rows;
   for (const Variant& v : variants) {

@@ -30,7 +30,8 @@ struct Wake {
 };
 
 /// Temperature of the surface along the track, by distance behind the source: the two rows of particles on
-/// either side of y = 0, extrapolated by half a spacing from the two outermost layers, linear in between.
+/// either side of y = 0, extrapolated from the two outermost layers with no gradient at the surface, linear
+/// in between.
 class Track {
  public:
   Track(const Particles& p, double spacing, double source) : spacing_(spacing), source_(source) {
@@ -39,7 +40,7 @@ class Track {
       if (p.is_wall(i) || std::abs(p.x[1][i]) > spacing || depth < 0 || depth > 2) continue;
       const auto column = static_cast<std::size_t>((p.x[0][i] - origin_) / spacing);
       if (column >= value_.size()) value_.resize(column + 1, 0.0);
-      value_[column] += 0.5 * (depth < 1 ? 1.5 : -0.5) * p.temperature[i];
+      value_[column] += 0.5 * (depth < 1 ? 1.125 : -0.125) * p.temperature[i];
     }
   }
   double operator()(double behind) const {
