@@ -21,6 +21,13 @@ struct Layer {
   double seconds = 0;
 };
 
+/// Stress along the surface [Pa], towards the cold wall x_max.
+double stress(const scene::Scene& scene) {
+  const auto& [hot, cold] = std::pair{scene.domain.faces[0].temperature, scene.domain.faces[1].temperature};
+  return scene.material.sigma_slope(0.5 * (hot + cold)) * (cold - hot) /
+         (scene.domain.max[0] - scene.domain.min[0]);
+}
+
 /// Temperature linear between the end walls, as conduction would leave it.
 void start_linear(scene::Simulation& simulation) {
   const scene::Scene& scene = simulation.scene();
@@ -41,9 +48,7 @@ Layer run(const Setting& setting, double spacing) {
   start_linear(*simulation);
   const scene::Scene& scene = simulation->scene();
   const double length = scene.domain.max[0] - scene.domain.min[0];
-  const double stress = scene.material.sigma_slope(400) *
-                        (scene.domain.faces[1].temperature - scene.domain.faces[0].temperature) / length;
-  const double scale = stress / scene.material.viscosity(400);  // depth 1
+  const double scale = stress(scene) / scene.material.viscosity(400);  // depth 1
   const Particles& p = simulation->particles();
   constexpr int kLooks = 10;
   Layer out;
