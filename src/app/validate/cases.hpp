@@ -16,7 +16,7 @@ struct Setting {
 };
 
 struct ValidationCase {
-  int tier;  ///< 1 analytic, 2 flow benchmarks, 3 welds against experiments (hours)
+  int tier;  ///< 1 analytic, 2 flow benchmarks
   const char* id;
   const char* summary;  ///< what is compared, one line
   Rows (*run)(const Setting& setting);

@@ -18,9 +18,12 @@ std::string text_of(const toml::table& entry, const char* key, const std::string
   return *value;
 }
 
+/// `pattern` may hold one "*", which stands for anything.
 bool matches(const std::string& pattern, const std::string& text) {
-  if (!pattern.ends_with('*')) return pattern == text;
-  return text.starts_with(pattern.substr(0, pattern.size() - 1));
+  const auto star = pattern.find('*');
+  if (star == std::string::npos) return pattern == text;
+  return text.size() + 1 >= pattern.size() && text.starts_with(pattern.substr(0, star)) &&
+         text.ends_with(pattern.substr(star + 1));
 }
 
 }  // namespace

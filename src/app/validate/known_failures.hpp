@@ -10,7 +10,7 @@ namespace meltray::app {
 /// Rows that are known to miss their pass line, with the reason found: validation/known_failures.toml, a list
 /// of
 ///   [[failure]]
-///   id, quantity, reason = texts; `quantity` as the row has it, or its beginning up to a final "*"
+///   id, quantity, reason = texts; `quantity` as the row has it, with one "*" for anything
 class KnownFailures {
  public:
   /// Throws UsageError where the file is no such list, with its line.

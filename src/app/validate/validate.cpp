@@ -15,18 +15,16 @@
 namespace meltray::app {
 namespace {
 
-constexpr int kLongTier = 3;  ///< welds: only when asked for by tier or id
-
 void check_choice(const ValidateArguments& a) {
-  if (a.tier && (*a.tier < 1 || *a.tier > kLongTier))
-    throw UsageError(fmt::format("validate: --tier: found {}; allowed 1, 2 or 3", *a.tier));
+  if (a.tier && *a.tier != 1 && *a.tier != 2)
+    throw UsageError(fmt::format("validate: --tier: found {}; allowed 1 or 2", *a.tier));
   if ((a.all ? 1 : 0) + (a.tier ? 1 : 0) + (a.ids.empty() ? 0 : 1) > 1)
     throw UsageError("validate: found more than one of IDs, --all and --tier; allowed one of them");
   if (!a.all && !a.tier && a.ids.empty() && !a.small && !a.list)
     throw UsageError("validate: found no validation case; allowed IDs, --all, --tier, --small or --list");
 }
 
-/// The cases of the list that are asked for, in its order; --all and --small alone mean tiers 1 and 2.
+/// The cases of the list that are asked for, in its order; --small and --list alone mean all.
 std::vector<const ValidationCase*> selected(const ValidateArguments& arguments) {
   check_choice(arguments);
   std::vector<std::string> known;
@@ -37,8 +35,8 @@ std::vector<const ValidationCase*> selected(const ValidateArguments& arguments) 
                                    fmt::join(known, ", "), nearest_name(id, known)));
   const auto wanted = [&](const ValidationCase& c) {
     if (arguments.tier) return c.tier == *arguments.tier;
-    if (arguments.ids.empty()) return c.tier < kLongTier || (arguments.list && !arguments.all);
-    return std::find(arguments.ids.begin(), arguments.ids.end(), c.id) != arguments.ids.end();
+    return arguments.ids.empty() ||
+           std::find(arguments.ids.begin(), arguments.ids.end(), c.id) != arguments.ids.end();
   };
   std::vector<const ValidationCase*> out;
   for (const ValidationCase& c : validation_cases())
