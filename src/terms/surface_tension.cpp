@@ -13,7 +13,7 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
 
 /// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the
 /// lattice, and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles'
-/// radius. Where the contact angle prescribes the normal it stays, a boundary value of the curvature.
+/// radius.
 void SurfaceTension::smooth_normals(const Stage& s) const {
   constexpr int kPasses = 2;
   sph::with_dim(s.constants->dim, [&](auto d) {
@@ -40,9 +40,7 @@ void SurfaceTension::smooth_normals(const Stage& s) const {
             norm += sum[c] * sum[c];
           }
           norm = std::sqrt(norm);
-          const double held = s.held.empty() ? 0.0 : s.held[i];
-          for (int c = 0; c < D; ++c)
-            smooth_[c][i] = held * s.normal[c][i] + (norm > 0 ? (1 - held) * sum[c] / norm : 0.0);
+          for (int c = 0; c < D; ++c) smooth_[c][i] = norm > 0 ? sum[c] / norm : 0.0;
         });
       }
     });

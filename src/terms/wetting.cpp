@@ -22,7 +22,6 @@ void Wetting::turn_normals(Stage& s) const {
     const double* const volume = s.volume.data();
     const std::uint8_t* const liquid = s.patch->liquid.data();
     for (int c = 0; c < D; ++c) turned_[c].resize(s.moving.size());
-    s.held.assign(s.size(), 0.0);
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       for (int c = 0; c < D; ++c) turned_[c][k] = s.normal[c][i];
@@ -52,16 +51,13 @@ void Wetting::turn_normals(Stage& s) const {
       }
       if (length < 1e-6) return;  // the free surface is parallel to the wall: no triple line here
       length = std::sqrt(length);
-      // A film along the wall has no direction of its own: it turns only as far as its normal already leans.
-      const double leaning = std::min(1.0, length / std::max(sine, 1e-6));
-      const double f = 1 - leaning * std::clamp(colour / kWallColourFull, 0.0, 1.0);
+      const double f = std::clamp(1 - colour / kWallColourFull, 0.0, 1.0);
       double mixed[D], size = 0;
       for (int c = 0; c < D; ++c) {
         mixed[c] = f * s.normal[c][i] + (1 - f) * (sine * tangent[c] / length - cosine * nw[c]);
         size += mixed[c] * mixed[c];
       }
       if (size < 1e-12) return;
-      s.held[i] = 1 - f;
       for (int c = 0; c < D; ++c) turned_[c][k] = mixed[c] / std::sqrt(size);
     });
     parallel_for(count, [&](std::ptrdiff_t k) {

@@ -84,7 +84,7 @@ Rows contact_angle(const Setting& setting) {
       fitted.back().goal = 4;
       heights.push_back(
           relative_row(fmt::format("{} deg: height", degrees), drop.height, exact.height, 0.04, how));
-      bases.push_back(relative_row(fmt::format("{} deg: base", degrees), drop.base, exact.base, 0.04, how));
+      bases.push_back(relative_row(fmt::format("{} deg: base", degrees), drop.base, exact.base, 0, how));
       rows.push_back(
           limit_row(fmt::format("{} deg: capillary number at the end", degrees), drop.speed, 1e-3, how));
       rows.back().judged = false;
@@ -92,6 +92,7 @@ Rows contact_angle(const Setting& setting) {
     add_series(rows, spacings, fitted);
     add_series(rows, spacings, heights);
     add_series(rows, spacings, bases);
+    rows.back().judged = false;  // no pass line of its own
   }
   return rows;
 }
