@@ -83,6 +83,7 @@ class CommandLine {
     auto* c = app_.add_subcommand("validate", "Runs validation cases against their references");
     c->add_option("ID", validate_.ids, "Validation cases");
     c->add_flag("--all", validate_.all, "All of them");
+    c->add_option("--tier", validate_.tier, "1: analytic, 2: flow benchmarks");
     c->add_flag("--list", validate_.list, "Only list them");
     c->add_flag("--small", validate_.small, "The twins that take seconds");
     c->add_option("--json", validate_.json, "Write the results to this file");

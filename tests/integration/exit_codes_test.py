@@ -28,6 +28,9 @@ class Usage(Scratch):
                                    (("run", WELD, "--until", "-1"), "--until"),
                                    (("run", WELD, "--until", "nan"), "--until"),
                                    (("resume", "nowhere"), "nowhere: no such run folder"),
+                                   (("validate", "--tier", "4"), "allowed 1 or 2"),
+                                   (("validate", "--tier", "1", "--all"), "allowed one of them"),
+                                   (("validate",), "found no validation case"),
                                    (("plot", "nowhere"), "nowhere"), (("list", "planets"), "planets")):
             with self.subTest(arguments):
                 done = meltray(*arguments, cwd=self.folder)

@@ -30,6 +30,7 @@ struct ResumeArguments {
 
 struct ValidateArguments {
   std::vector<std::string> ids;
+  std::optional<int> tier;  ///< 1 analytic, 2 flow benchmarks
   bool all = false, list = false, small = false;  ///< small: the seconds-long twins that ./dev test runs
   std::optional<std::filesystem::path> json;
 };

@@ -16,6 +16,7 @@ struct Setting {
 };
 
 struct ValidationCase {
+  int tier;  ///< 1 analytic, 2 flow benchmarks
   const char* id;
   const char* summary;  ///< what is compared, one line
   Rows (*run)(const Setting& setting);
@@ -26,9 +27,21 @@ const std::vector<ValidationCase>& validation_cases();
 
 Rows fresnel_angles(const Setting& setting);
 Rows wedge_absorption(const Setting& setting);
+Rows gouffe_cavity(const Setting& setting);
+Rows stefan_one_phase(const Setting& setting);
 Rows stefan_two_phase_iron(const Setting& setting);
+Rows stefan_two_phase_aluminium(const Setting& setting);
+Rows surface_flux(const Setting& setting);
+Rows rosenthal(const Setting& setting);
+Rows poiseuille_startup(const Setting& setting);
+Rows couette_startup(const Setting& setting);
 Rows taylor_green(const Setting& setting);
 Rows laplace_drop(const Setting& setting);
+Rows oscillating_drop(const Setting& setting);
+Rows contact_angle(const Setting& setting);
+Rows marangoni_cavity(const Setting& setting);
+Rows natural_convection(const Setting& setting);
+Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
 
 }  // namespace meltray::app

@@ -29,7 +29,7 @@ nlohmann::json json_number(const std::optional<double>& number) {
 
 std::string verdict(const Row& r) {
   if (!r.judged) return "report";
-  if (!r.passed()) return "FAIL";
+  if (!r.passed()) return r.known_failure.empty() ? "FAIL" : "FAIL (known)";
   return r.goal && r.error > *r.goal ? "pass, goal missed" : "pass";
 }
 
@@ -62,6 +62,7 @@ void write_json(const std::filesystem::path& file, const Rows& rows) {
                     {"goal", json_number(r.goal)},
                     {"passed", r.passed()},
                     {"judged", r.judged},
+                    {"known_failure", r.known_failure},
                     {"order", json_number(r.order)},
                     {"seconds", r.seconds},
                     {"source", r.source}});

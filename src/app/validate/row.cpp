@@ -42,6 +42,15 @@ Row limit_row(std::string quantity, double value, double limit, const Measured& 
   return row(std::move(quantity), value, 0, std::abs(value), limit, how);
 }
 
+void add_series(Rows& rows, const std::vector<double>& scales, Rows series) {
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    series[k].judged = k + 1 == series.size();
+    if (k > 0)
+      series[k].order = observed_order(series[k - 1].error, series[k].error, scales[k - 1] / scales[k]);
+  }
+  rows.insert(rows.end(), series.begin(), series.end());
+}
+
 std::optional<double> observed_order(double coarse, double fine, double ratio) {
   if (!(coarse > 0) || !(fine > 0)) return std::nullopt;
   return std::log(coarse / fine) / std::log(ratio);

@@ -20,6 +20,7 @@ struct Row {
   std::optional<double> order;  ///< observed, against the next coarser resolution
   double seconds = 0;           ///< of the run behind the row
   std::string source;           ///< of the reference
+  std::string known_failure;    ///< why it misses its pass line, where that is known
   bool judged = true;           ///< false: reported only (a coarse resolution, a broken run's rest)
 
   bool passed() const { return !judged || error <= tolerance; }  // false for NaN
@@ -40,6 +41,10 @@ Row relative_row(std::string quantity, double value, double reference, double to
 Row absolute_row(std::string quantity, double value, double reference, double tolerance, const Measured& how);
 /// 0 <= value <= limit: the value is itself an error.
 Row limit_row(std::string quantity, double value, double limit, const Measured& how);
+
+/// One quantity at several resolutions, coarse to fine, `scales[k]` being the spacing of `series[k]` in any
+/// unit: sets the observed orders, judges the finest only, and appends all to `rows`.
+void add_series(Rows& rows, const std::vector<double>& scales, Rows series);
 
 /// Order of convergence between two resolutions with errors `coarse` and `fine`; nothing where one is zero.
 std::optional<double> observed_order(double coarse, double fine, double ratio);

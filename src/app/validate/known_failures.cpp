@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "app/validate/known_failures.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+
+#include "meltray/core/errors.hpp"
+
+namespace meltray::app {
+namespace {
+
+std::string text_of(const toml::table& entry, const char* key, const std::string& file) {
+  const auto value = entry[key].value<std::string>();
+  if (!value || value->empty())
+    throw UsageError(
+        fmt::format("{}:{}: {}: found nothing; allowed a text", file, entry.source().begin.line, key));
+  return *value;
+}
+
+/// `pattern` may hold one "*", which stands for anything.
+bool matches(const std::string& pattern, const std::string& text) {
+  const auto star = pattern.find('*');
+  if (star == std::string::npos) return pattern == text;
+  return text.size() + 1 >= pattern.size() && text.starts_with(pattern.substr(0, star)) &&
+         text.ends_with(pattern.substr(star + 1));
+}
+
+}  // namespace
+
+KnownFailures::KnownFailures(const std::filesystem::path& file) {
+  try {
+    const toml::table table = toml::parse_file(file.string());
+    if (const auto* list = table["failure"].as_array())
+      for (const auto& item : *list)
+        if (const auto* entry = item.as_table())
+          failures_.push_back({text_of(*entry, "id", file.string()),
+                               text_of(*entry, "quantity", file.string()),
+                               text_of(*entry, "reason", file.string())});
+  } catch (const toml::parse_error& e) {
+    throw UsageError(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
+  }
+}
+
+void KnownFailures::mark(Rows& rows) const {
+  for (Row& row : rows) {
+    if (row.passed()) continue;
+    for (const Failure& f : failures_)
+      if (f.id == row.id && matches(f.quantity, row.quantity)) row.known_failure = f.reason;
+  }
+}
+
+}  // namespace meltray::app
