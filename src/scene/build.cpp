@@ -177,6 +177,7 @@ terms::SceneConstants build_constants(const Scene& scene) {
                                                               : sph::KernelType::cubic_spline;
   k.lattice = sph::lattice_sums(k.kernel, k.dim, k.spacing, k.smoothing);
   k.material = scene.material;
+  k.free_surface = scene.flow.free_surface;
   for (int f = 0; f < 6; ++f) {
     const Face& face = scene.domain.faces[f];
     terms::WallFace& wall = k.faces[f];

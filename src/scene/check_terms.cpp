@@ -70,6 +70,19 @@ void check_terms(const Scene& scene, const Document& document) {
       scene.flow.interface_viscosity_solid == 0)
     inert(document, "terms.interface_viscosity", "both its coefficients are 0",
           "flow.interface_viscosity_free or flow.interface_viscosity_solid > 0");
+  if (!scene.flow.free_surface) {
+    const auto& faces = scene.domain.faces;
+    const auto open = [&](int f) {
+      return (scene.domain.dimension == 3 || f / 2 != 1) && faces[f].kind == FaceKind::free;
+    };
+    bool any_open = false;
+    for (int f = 0; f < 6; ++f) any_open = any_open || open(f);
+    if (any_open || t.surface_tension || t.recoil || t.evaporation || t.radiation || scene.laser)
+      refuse(document.place("flow.free_surface"), "flow.free_surface",
+             any_open ? "false with a free face" : "false with a term that acts on the free surface",
+             "true, or a closed or periodic box without surface tension, recoil, evaporation, radiation and "
+             "laser");
+  }
   for (int f = 0; f < 6; ++f)
     if (scene.domain.dimension == 3 || f / 2 != 1) check_thermal(scene, document, f);
 }

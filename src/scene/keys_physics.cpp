@@ -46,6 +46,10 @@ std::vector<Key> flow_keys() {
       integer("flow.pressure_max_iterations", between(1, 1000000), MELTRAY_AT(flow.pressure_max_iterations),
               "Largest number of iterations of a pressure solve.")
           .only_if(pressure),
+      boolean("flow.free_surface", MELTRAY_AT(flow.free_surface),
+              "false: the fluid fills a closed or periodic box, and a loose spot in it is not taken for a "
+              "surface.")
+          .only_if(pressure),
       number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),
              "Time in which the projection takes back errors of density; 0: five spacings at the speed that "
              "the scene implies.")
@@ -55,7 +59,9 @@ std::vector<Key> flow_keys() {
           .only_if(pressure),
       number("flow.shifting_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.shifting_speed),
              "Least speed that shifting reckons with, so that it acts at stagnation points.")
-          .only_if({"flow.shifting > 0", {"flow.shifting"}, [](const Scene& s, int) { return s.flow.shifting > 0; }}),
+          .only_if({"flow.shifting > 0",
+                    {"flow.shifting"},
+                    [](const Scene& s, int) { return s.flow.shifting > 0; }}),
       number(
           "flow.reference_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.reference_speed),
           "Speed that scales the interface viscosity: the sound speed a weakly compressible model would use.")

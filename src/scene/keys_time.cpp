@@ -93,9 +93,11 @@ std::vector<Key> limit_keys() {
       number("time.cfl_capillary", "", range, MELTRAY_AT(time.cfl_capillary),
              "Step over sqrt(rho h^3 / (2 pi sigma)).")
           .only_if(tension),
-      number("time.cfl_viscous", "", range, MELTRAY_AT(time.cfl_viscous), "Step of explicit viscosity over its stability bound (Gershgorin).")
+      number("time.cfl_viscous", "", range, MELTRAY_AT(time.cfl_viscous),
+             "Step of explicit viscosity over its stability bound (Gershgorin).")
           .only_if(viscous),
-      number("time.cfl_thermal", "", range, MELTRAY_AT(time.cfl_thermal), "Step of explicit conduction over its stability bound (Gershgorin).")
+      number("time.cfl_thermal", "", range, MELTRAY_AT(time.cfl_thermal),
+             "Step of explicit conduction over its stability bound (Gershgorin).")
           .only_if(term("conduction", &Terms::conduction)),
       number("time.cfl_force", "", range, MELTRAY_AT(time.cfl_force), "Step over sqrt(h / |a|)."),
       number("time.beam_travel", "focal radius", range, MELTRAY_AT(time.beam_travel),

@@ -265,9 +265,10 @@ void Simulation::Impl::change_phases(double) {
   }
 }
 
-/// Liquid that leaves the box through a free face is ejected. One that overshoots a wall by less than a spacing is held
-/// at it, at the cost of its velocity into the wall (an impulse of the pressure); farther behind it is a loss of the
-/// cropping and counts as removed. Periodic directions wrap around.
+/// Liquid that leaves the box through a free face is ejected. One that overshoots a wall by less than a
+/// spacing is held at it, at the cost of its velocity into the wall (an impulse of the pressure), and counts
+/// as clamped; farther behind it is a loss of the cropping and counts as removed. Periodic directions wrap
+/// around.
 void Simulation::Impl::remove_escaped() {
   for (Index i : model.stage.moving) {
     const Index g = model.patch.global[i];
@@ -284,9 +285,13 @@ void Simulation::Impl::remove_escaped() {
       const int face = 2 * (constants.dim == 2 && c == 1 ? 2 : c) + (above ? 1 : 0);
       const double plane = above ? scene.domain.max[c] : scene.domain.min[c];
       if (scene.domain.faces[face].kind == FaceKind::wall && std::abs(x - plane) < constants.spacing) {
-        momentum.pressure[c] -= particles.mass[g] * particles.v[c][g];
-        particles.v[c][g] = 0;
+        const bool outwards = above == (particles.v[c][g] > 0);
+        if (outwards) {
+          momentum.pressure[c] -= particles.mass[g] * particles.v[c][g];
+          particles.v[c][g] = 0;
+        }
         x = plane;
+        ++counters.clamped;
         continue;
       }
       outside = true;

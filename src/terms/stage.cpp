@@ -63,6 +63,7 @@ void compute_surface(Stage& s) {
         });
         const double self = volume[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
         s.fill[i] = (sum[0] + self) / lattice.shepard;
+        if (!s.constants->free_surface) return;
         s.diagonal[i] = sum[1] / lattice.laplacian;
         s.loose[i] = s.patch->liquid[i] && count < kFewestNeighbours[D - 2];
         double norm = 0;

@@ -76,6 +76,7 @@ struct Flow {
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
+  bool free_surface = true;    ///< false: the fluid fills a closed or periodic box
   double drift_time = 0;       ///< in which errors of density are taken back [s]; 0: from the scene's speeds
   double shifting = 0;         ///< coefficient C of the shifting velocity; 0 = off
   double shifting_speed = 0;   ///< least speed that shifting reckons with [m/s]

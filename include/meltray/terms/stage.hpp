@@ -30,6 +30,7 @@ struct SceneConstants {
   sph::LatticeSums lattice;
   Material material;
   std::array<WallFace, 6> faces;
+  bool free_surface = true;     ///< false: the fluid fills its box and every particle is inside
   bool any_no_slip = false;     ///< some face is a no-slip wall
   bool any_isothermal = false;  ///< some face holds a temperature
   double melting_temperature() const { return material.liquidus; }

@@ -128,6 +128,10 @@ void Projection::compression(const Stage& s, std::vector<double>& out) const {
   const double open = 1 - s.constants->lattice.face_fill;
   parallel_for(rows(), [&](Index r) {
     const Index i = particle_of_[r];
+    if (!s.constants->free_surface) {
+      out[r] = s.patch->wall[i] ? 0.0 : s.fill[i] - 1;
+      return;
+    }
     // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything
     // emptier than that is shape, not density.
     const double excess = s.fill[i] + open * s.exposure[i] - 1;
