@@ -159,6 +159,8 @@ Attempt MultirateDriver::advance(double h, N_Vector y_new) {
   message_.clear();
   check(MRIStepReset(m, t_, y_), "MRIStepReset");
   check(MRIStepSetFixedStep(m, h), "MRIStepSetFixedStep");
+  // MRIStep begins its first stage with what the vector of the result holds.
+  N_VScale(1.0, y_, y_new);
   double reached = t_;
   const int code = MRIStepEvolve(m, t_ + 2 * h, y_new, &reached, ARK_ONE_STEP);
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
