@@ -40,16 +40,17 @@ void watch(const scene::Simulation& simulation, Cell& cell) {
   }
 }
 
-/// What the impulses leave unexplained, over the largest of them.
-double momentum_error(const scene::MomentumBudget& m) {
+/// What the impulses leave unexplained, over the melt's mass times its top speed: the impulses on a body at
+/// rest cancel, and would be no measure.
+double momentum_error(const scene::MomentumBudget& m, const Particles& p, double top_speed) {
   const Vec3 change = m.current - m.initial;
   const Vec3 supplied =
       m.gravity + m.surface + m.pressure + m.viscosity + m.shifting + m.phase_change - m.ejected;
-  double largest = std::max(change.norm(), m.initial.norm());
-  for (const Vec3& item :
-       {m.gravity, m.surface, m.pressure, m.viscosity, m.shifting, m.phase_change, m.ejected})
-    largest = std::max(largest, item.norm());
-  return largest > 0 ? (change - supplied).norm() / largest : 0.0;
+  double mass = 0;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p.is_liquid(i) && !p.is_wall(i)) mass += p.mass[i];
+  const double size = mass * top_speed;
+  return size > 0 ? (change - supplied).norm() / size : 0.0;
 }
 
 Cell compute(const scene::Scene& scene, Measure measure, std::int64_t largest_steps) {
@@ -85,7 +86,7 @@ Cell compute(const scene::Scene& scene, Measure measure, std::int64_t largest_st
   cell.pressure_at_limit = c.pressure_at_limit;
   cell.clamped = c.clamped + c.removed;
   cell.energy_error = simulation.energy().relative_error();
-  cell.momentum_error = momentum_error(simulation.momentum());
+  cell.momentum_error = momentum_error(simulation.momentum(), simulation.particles(), cell.top_speed);
   return cell;
 }
 

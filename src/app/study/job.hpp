@@ -56,8 +56,9 @@ std::vector<double> halved_steps(double longest, int halvings);
 /// The same run for every seed of the scene; cost and quantities are means. A run that fails fails them all.
 Cell run_seeds(const Job& job, const scene::Overrides& overrides, std::vector<Quantities>* single = nullptr);
 
-/// The reference for steps down to `finest`, and what to say about it.
-Reference reference(const Job& job, const std::string& model, const scene::Overrides& base, double finest,
+/// The reference by steps of `step`, checked by one with steps twice as long; noted in the findings. Throws
+/// NumericalFailure where one of them fails.
+Reference reference(const Job& job, const std::string& model, const scene::Overrides& base, double step,
                     Findings& findings);
 
 }  // namespace meltray::app::studies

@@ -8,16 +8,6 @@
 #include "meltray/core/errors.hpp"
 
 namespace meltray::app::studies {
-namespace {
-
-/// The reference's step over the finest one that it judges: a projection once a step is of first order, the
-/// rest of fourth. The second reference takes steps twice as long.
-constexpr double kFinerStep = 64, kFinerStage = 8;
-/// Of a chaotic scene only means over seeds are known, and finer steps do not make them more certain.
-constexpr double kFinerChaotic = 4;
-
-}  // namespace
-
 std::vector<double> halved_steps(double longest, int halvings) {
   std::vector<double> steps;
   for (int k = 0; k <= halvings; ++k) steps.push_back(std::ldexp(longest, -k));
@@ -49,23 +39,21 @@ Cell run_seeds(const Job& job, const scene::Overrides& overrides, std::vector<Qu
   return sum;
 }
 
-Reference reference(const Job& job, const std::string& model, const scene::Overrides& base, double finest,
+Reference reference(const Job& job, const std::string& model, const scene::Overrides& base, double step,
                     Findings& findings) {
   const scene::Scene scene = job.scene(base);
   const Variant v = reference_variant(scene, model);
-  const bool chaotic = !job.definition.seeds.empty();
-  const double finer = chaotic ? kFinerChaotic : model == "step" ? kFinerStep : kFinerStage;
   std::vector<Quantities> single;
-  const auto run = [&](double step, std::vector<Quantities>* runs) {
-    const Cell cell = run_seeds(job, joined(base, joined(v.overrides, fixed_step(step))), runs);
+  const auto run = [&](double dt, std::vector<Quantities>* runs) {
+    const Cell cell = run_seeds(job, joined(base, joined(v.overrides, fixed_step(dt))), runs);
     if (!cell.finished)
       throw NumericalFailure(
-          fmt::format("reference '{}' with steps of {:.3g} s: {}", v.name, step, cell.failure));
+          fmt::format("reference '{}' with steps of {:.3g} s: {}", v.name, dt, cell.failure));
     return cell.quantities;
   };
   Reference out;
-  out.quantities = run(finest / finer, &single);
-  const Quantities second = run(2 * finest / finer, nullptr);
+  out.quantities = run(step, &single);
+  const Quantities second = run(2 * step, nullptr);
   for (std::size_t q = 0; q < out.quantities.size(); ++q) {
     out.uncertainty.push_back(relative_error(second[q], out.quantities[q]));
     double variance = 0;
@@ -76,7 +64,7 @@ Reference reference(const Job& job, const std::string& model, const scene::Overr
     findings.references.push_back({{"spacing_m", scene.domain.spacing},
                                    {"model", model},
                                    {"method", v.name},
-                                   {"step_s", finest / finer},
+                                   {"step_s", step},
                                    {"quantity", out.quantities[q].name},
                                    {"uncertainty", out.uncertainty.back()},
                                    {"spread_over_seeds", out.spread.back()}});

@@ -26,7 +26,9 @@ constexpr double kSpeedBound = 2, kTemperatureBound = 0.1;
 /// Share of the largest stable step at which the halvings begin, and the longest run they may take.
 constexpr double kFirstStep = 0.7;
 constexpr double kMostSteps = 4000;
-constexpr double kReferenceFactor = 10;  // of the error over what is known of the reference
+/// The reference's step is this much finer than the finest; errors count from this many times what is known
+/// of it. (Of a projection once a step it is itself only of first order.)
+constexpr double kFiner = 8, kReferenceFactor = 5;
 
 struct Result {
   std::string assignment, model;
@@ -74,7 +76,7 @@ class Study {
     try {
       const Variant v = reference_variant(job_.scene(base), model);
       bounds_ = job_.run(joined(base, joined(v.overrides, fixed_step(finest))));
-      return reference(job_, model, base, finest, findings_);
+      return reference(job_, model, base, finest / kFiner, findings_);
     } catch (const NumericalFailure& e) {
       findings_.conclusions.push_back(fmt::format("{}: {}", model, e.what()));
       return std::nullopt;

@@ -14,7 +14,7 @@ namespace meltray::app::studies {
 namespace {
 
 /// Bounds of a cell that counts as stable.
-constexpr double kEnergyBound = 1e-6, kMomentumBound = 1e-2;
+constexpr double kEnergyBound = 1e-6, kMomentumBound = 1e-6;
 constexpr double kAtLimitBound = 0.01;  ///< share of pressure solves that end at their limit of iterations
 constexpr double kSpeedBound = 3;       ///< times the largest speed of the case as it is, times the factor
 constexpr double kUndershoot = 5;       ///< below the lowest temperature of the case as it is [K]
