@@ -11,7 +11,6 @@
 #include "app/validate/row.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/files.hpp"
-#include "meltray/observe/version.hpp"
 #include "meltray/scene/case_file.hpp"
 
 namespace meltray::app::studies {
@@ -153,7 +152,9 @@ Cell read(const std::string& text) {
 
 }  // namespace
 
-Cells::Cells(fs::path folder) : folder_(std::move(folder)) {
+Cells::Cells(fs::path folder)
+    : folder_(std::move(folder)),
+      program_(fmt::format("{:016x}", observe::fnv1a(observe::read_bytes("/proc/self/exe")))) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw IoError(fmt::format("{}: {}", folder_.string(), error.message()));
@@ -162,7 +163,7 @@ Cells::Cells(fs::path folder) : folder_(std::move(folder)) {
 Cell Cells::run(const scene::Scene& scene, Measure measure, const std::string& what,
                 std::int64_t largest_steps) {
   const std::string content =
-      fmt::format("{}\n{}\n{}\n{}", observe::version(), what, largest_steps, scene::write_case(scene));
+      fmt::format("{}\n{}\n{}\n{}", program_, what, largest_steps, scene::write_case(scene));
   const fs::path file = folder_ / fmt::format("{:016x}.json", observe::fnv1a(content));
   if (fs::exists(file)) try {
       const Cell cell = read(observe::read_text(file));

@@ -29,7 +29,7 @@ struct Cell {
 };
 
 /// Runs scenes, and keeps each result in a file of its own, named after the content of the run: the resolved
-/// case, what is measured, and the version of the program. A study that is started again goes on where it
+/// case, what is measured, and the program itself. A study that is started again goes on where it
 /// stopped.
 class Cells {
  public:
@@ -45,6 +45,7 @@ class Cells {
 
  private:
   std::filesystem::path folder_;
+  std::string program_;  ///< fingerprint of the executable: any change of the code makes other cells
   int computed_ = 0, kept_ = 0;
 };
 
