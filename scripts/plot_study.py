@@ -82,7 +82,7 @@ def splitting(study):
                 continue
             at = -(k * len(strengths) + s)
             left.barh(at, found[0]["largest_stable_step_s"], color=f"C{s}")
-            right.barh(at, found[0]["applications_per_s"] or 0, color=f"C{s}")
+            right.barh(at, found[0]["passes_per_s"] or 0, color=f"C{s}")
             ticks.append(at)
             labels.append(" ".join(filter(None, (projection, assignment, strength if len(strengths) > 1 else ""))))
     left.set_yticks(ticks, labels, fontsize=6)

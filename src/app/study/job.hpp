@@ -21,9 +21,9 @@ struct Job {
   bool small;  ///< the twin that takes seconds
   Cells& cells;
 
-  scene::Scene scene(const scene::Overrides& overrides = {}) const {
-    return scene::read_case(case_file, overrides);
-  }
+  /// The scene with overrides. With fixed steps its tolerances only tell Newton's method when to stop: they
+  /// are then tight, so that the error is that of the steps.
+  scene::Scene scene(const scene::Overrides& overrides = {}) const;
   /// Runs the scene with overrides and keeps the result.
   Cell run(const scene::Overrides& overrides) const {
     return cells.run(scene(overrides), definition.measure, definition.id);

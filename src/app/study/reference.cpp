@@ -8,6 +8,16 @@
 #include "meltray/core/errors.hpp"
 
 namespace meltray::app::studies {
+scene::Scene Job::scene(const scene::Overrides& overrides) const {
+  constexpr double kTight = 1e-6;
+  scene::Scene s = scene::read_case(case_file, overrides);
+  if (s.time.integrator.fixed_step > 0)
+    for (double* tolerance :
+         {&s.time.rtol, &s.time.atol_position, &s.time.atol_velocity, &s.time.atol_temperature})
+      *tolerance *= kTight;
+  return s;
+}
+
 std::vector<double> halved_steps(double longest, int halvings) {
   std::vector<double> steps;
   for (int k = 0; k <= halvings; ++k) steps.push_back(std::ldexp(longest, -k));

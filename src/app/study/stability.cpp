@@ -142,7 +142,8 @@ std::vector<std::string> stability_parameters(const scene::Scene& scene) {
 Findings stability(const Job& job, const std::string& name) {
   const scene::Scene base = job.scene();
   const Parameter& parameter = find(name, base);
-  std::vector<double> refinements = {1, 0.75}, step_factors = {0.5, 1, 2, 4, 8}, factors = parameter.factors;
+  std::vector<double> refinements = {1, 0.75}, step_factors = {0.5, 1, 2, 4, 8, 16, 32},
+                      factors = parameter.factors;
   if (job.small) {
     refinements = {1};
     step_factors = {1, 8};
