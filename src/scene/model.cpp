@@ -106,6 +106,12 @@ bool Model::has_implicit() const {
          ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
 }
 
+bool Model::implicit_is_linear() const {
+  // Viscosity alone: its coefficients rest on positions and temperatures that no implicit term changes.
+  return !(scene_.terms.conduction && partitions.conduction) &&
+         !((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
+}
+
 std::size_t Model::crossings_begin() const {
   return (flows() ? 2 * constants_.dim * stage.moving.size() : 0) + stage.heated.size();
 }

@@ -134,6 +134,8 @@ std::vector<StepLimit> Model::step_limits() {
       const double sigma = constants_.material.sigma(constants_.melting_temperature());
       limits.push_back({time.cfl_capillary * std::sqrt(rho * h * h * h / (2 * M_PI * sigma)), "capillary"});
     }
+    // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
+    if (scene_.flow.projection == Projection::stage) limits.push_back({divergence_time, "divergence"});
     if (largest_acceleration > 0)
       limits.push_back({time.cfl_force * std::sqrt(h / largest_acceleration), "force"});
     if (viscous(false).any()) {

@@ -117,9 +117,6 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   for (Index i = 0; i < n; ++i) start_[i + 1] += start_[i];
   const std::size_t pairs = start_[n];
   j_.resize(pairs);
-  for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs);
-  w_.resize(pairs);
-  f_.resize(pairs);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
@@ -136,6 +133,9 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
 }
 
 void PairList::refresh(const Patch& patch, KernelType kernel) {
+  for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs());
+  w_.resize(pairs());
+  f_.resize(pairs());
   std::array<double, 3> inverse_period{};
   for (int c = 0; c < dim_; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
   with_dim(dim_, [&](auto d) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -41,7 +42,7 @@ class PairList {
   /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
   /// while particles move by less than half of it.
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
-  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions.
+  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours only.
   void refresh(const Patch& patch, KernelType kernel);
 
   Index rows() const { return static_cast<Index>(start_.size()) - 1; }
@@ -53,6 +54,10 @@ class PairList {
   const std::vector<std::uint8_t>& next_to_melt() const { return next_to_melt_; }
   /// 1 for rows with a dummy of a box face among their neighbours.
   const std::vector<std::uint8_t>& next_to_wall() const { return next_to_wall_; }
+  /// Component c of a difference of two positions, to the nearest periodic image.
+  double nearest(int c, double difference) const {
+    return period_[c] > 0 ? difference - period_[c] * std::rint(difference / period_[c]) : difference;
+  }
   std::size_t bytes() const;
   std::size_t pairs() const { return j_.size(); }
 
