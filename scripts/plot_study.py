@@ -86,7 +86,7 @@ def splitting(study):
             ticks.append(at)
             labels.append(" ".join(filter(None, (projection, assignment, strength if len(strengths) > 1 else ""))))
     left.set_yticks(ticks, labels, fontsize=6)
-    for axes, label in ((left, "largest stable step [s]"), (right, "passes over pairs per second, error 1e-3")):
+    for axes, label in ((left, "largest stable step [s]"), (right, f"passes over pairs per second, error {study['rows'][0]['target_error']:g}")):
         axes.set_xscale("log")
         axes.set_xlabel(label)
     return figure

@@ -44,6 +44,7 @@ const std::vector<StudyScene>& study_scenes() {
                    {},
                    {}});
     all.push_back({"weld", "a short cropped weld", weld_quantities, 4e-6, 3, {5e-5}, {1, 2, 3, 4, 5}, {}});
+    all.back().target = 0.1;
     all.push_back({"static_pool", "a pool at rest under recoil", no_quantities, 0, 0, {}, {}, {}});
     all.push_back(
         {"natural_convection", "a closed square heated on one side", no_quantities, 0, 0, {}, {}, {}});

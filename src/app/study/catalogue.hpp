@@ -23,6 +23,7 @@ struct StudyScene {
     scene::Overrides overrides;
   };
   std::vector<Strength> strengths;
+  double target = 1e-3;  ///< for `splitting`: error of the first quantity at which costs are compared
 };
 
 const std::vector<StudyScene>& study_scenes();

@@ -13,8 +13,6 @@
 namespace meltray::app::studies {
 namespace {
 
-/// Error at which assignments are compared.
-constexpr double kTarget = 1e-3;
 /// A run of so many steps shows whether a step is stable: just beyond the limit an error grows by a fifth a
 /// step.
 constexpr int kStableSteps = 100;
@@ -43,7 +41,8 @@ struct Result {
 
 class Study {
  public:
-  explicit Study(const Job& job) : job_(job) {}
+  /// One seed is enough: assignments are compared on one and the same start.
+  explicit Study(const Job& job) : job_(job) { job_.definition.seeds.clear(); }
 
   Findings run() {
     auto strengths = job_.definition.strengths;
@@ -130,7 +129,7 @@ class Study {
       if (known && coarse_error > 0) r.order = observed_order(coarse_error, error, 2);
       coarse_error = known ? error : 0;
       if (!r.error) r.error = error;
-      if (error <= kTarget && r.target_step == 0) cost(cell, step, end, r);
+      if (error <= job_.definition.target && r.target_step == 0) cost(cell, step, end, r);
     }
     // Too many steps to run: stability asks for far smaller steps than accuracy.
     if (end / first > kMostSteps) {
@@ -167,7 +166,7 @@ class Study {
            {"larger_not_tried", r.bounded},
            {"gain_over_all_explicit",
             explicit_one.stable_step > 0 ? Json(r.stable_step / explicit_one.stable_step) : Json(nullptr)},
-           {"target_error", kTarget},
+           {"target_error", job_.definition.target},
            {"step_at_target_s", if_reached(r.target_step)},
            {"evaluations_per_s", if_reached(r.evaluations)},
            {"passes_per_s", if_reached(r.work)},
@@ -175,7 +174,8 @@ class Study {
     }
     if (best == nullptr) {
       findings_.conclusions.push_back(fmt::format("{} {}: no assignment reaches an error of {:.0e}",
-                                                  strength.name, results.front().model, kTarget));
+                                                  strength.name, results.front().model,
+                                                  job_.definition.target));
       return;
     }
     recommend(strength, scene, results, *best);
@@ -195,13 +195,13 @@ class Study {
     const double excess = same == results.end() ? INFINITY : same->work / best.work - 1;
     findings_.conclusions.push_back(fmt::format(
         "{} {}: recommended for an error of {:.0e}: {} with steps of {:.3g} s; auto chooses {}: {}",
-        strength.name, best.model, kTarget, best.assignment, best.target_step, chosen,
+        strength.name, best.model, job_.definition.target, best.assignment, best.target_step, chosen,
         chosen == best.assignment
             ? "agrees"
             : fmt::format("differs, {:.0f} % more passes over the pairs", 100 * excess)));
   }
 
-  const Job& job_;
+  Job job_;
   Findings findings_;
   Cell bounds_;
 };

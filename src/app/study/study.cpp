@@ -84,13 +84,14 @@ int study(const StudyArguments& a) {
                                                     : stability(job, a.parameter);
   for (const std::string& line : found.conclusions) fmt::print("{}\n", line);
   const std::string text = json(a, definition.id, found);
-  const std::string stem = a.parameter.empty() ? a.kind : a.kind + "-" + a.parameter;
+  std::string stem = a.kind;
+  if (a.kind == "stability") stem += "-" + found.rows.front().at("parameter").get<std::string>();
   const fs::path data = out / (stem + ".json");
   observe::replace_file(data, text);
   observe::replace_file(out / (stem + ".csv"), csv(found.rows));
   if (a.json) observe::replace_file(*a.json, text);
   fmt::print("{} runs, {} of them kept from before; {}/{}.csv\n", cells.computed() + cells.kept(),
-             cells.kept(), out.string(), a.kind);
+             cells.kept(), out.string(), stem);
   return run_script("plot_study.py", {data.string()});
 }
 
