@@ -9,7 +9,7 @@
 
 namespace meltray::app::studies {
 scene::Scene Job::scene(const scene::Overrides& overrides) const {
-  constexpr double kTight = 1e-6;
+  constexpr double kTight = 1e-3;
   scene::Scene s = scene::read_case(case_file, overrides);
   if (s.time.integrator.fixed_step > 0)
     for (double* tolerance :
