@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -28,17 +29,16 @@ std::string csv_cell(const Json& value) {
 }
 
 std::string csv(const std::vector<Json>& rows) {
-  std::string text;
-  if (rows.empty()) return text;
-  for (const auto& [name, value] : rows.front().items()) text += (text.empty() ? "" : ",") + name;
+  std::vector<std::string> cells;
+  if (!rows.empty())
+    for (const auto& [name, value] : rows.front().items()) cells.push_back(name);
+  std::string text = fmt::format("{}\n", fmt::join(cells, ","));
   for (const Json& row : rows) {
-    text += '\n';
-    std::string line;
-    for (const auto& [name, value] : row.items())
-      line += (&value == &*row.begin() ? "" : ",") + csv_cell(value);
-    text += line;
+    cells.clear();
+    for (const auto& [name, value] : row.items()) cells.push_back(csv_cell(value));
+    text += fmt::format("{}\n", fmt::join(cells, ","));
   }
-  return text + '\n';
+  return text;
 }
 
 std::string json(const StudyArguments& a, const std::string& id, const Findings& found) {
