@@ -85,7 +85,8 @@ int study(const StudyArguments& a) {
   for (const std::string& line : found.conclusions) fmt::print("{}\n", line);
   const std::string text = json(a, definition.id, found);
   std::string stem = a.kind;
-  if (a.kind == "stability") stem += "-" + found.rows.front().at("parameter").get<std::string>();
+  if (a.kind == "stability")
+    stem = fmt::format("{}-{}", a.kind, found.rows.front().at("parameter").get<std::string>());
   const fs::path data = out / (stem + ".json");
   observe::replace_file(data, text);
   observe::replace_file(out / (stem + ".csv"), csv(found.rows));
