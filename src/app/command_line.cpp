@@ -30,6 +30,7 @@ class CommandLine {
     add_resume();
     add_check();
     add_validate();
+    add_study();
     add_plot();
     add_compare();
     add_list();
@@ -90,6 +91,34 @@ class CommandLine {
     c->callback([this] { command_ = [this] { return validate(validate_); }; });
   }
 
+  /// One sub-command a kind of study.
+  void add_study() {
+    auto* c =
+        app_.add_subcommand("study", "Error against work, splitting and stability of the time integration");
+    c->require_subcommand(1);
+    const auto add = [&](const char* kind, const char* text, const char* scenes) {
+      auto* k = c->add_subcommand(kind, text);
+      k->add_option("ID", study_.what, scenes)->required();
+      k->add_option("--json", study_.json, "Write the results to this file as well");
+      k->add_option("--out", study_.out, "Folder of the results [default: runs/studies/<id>]");
+      k->add_flag("--small", study_.small, "The twin that takes seconds");
+      k->add_option("--threads", study_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+      k->callback([this, kind] {
+        study_.kind = kind;
+        command_ = [this] { return study(study_); };
+      });
+      return k;
+    };
+    add("work-precision", "Error against evaluations and time over methods and steps",
+        "Scene of the studies");
+    add("splitting", "Order, largest stable step and cost of each assignment of terms",
+        "Scene of the studies");
+    add("stability", "Where a scene is stable, degraded or fails, over step, resolution and a parameter",
+        "Scene of the studies, or a case file")
+        ->add_option("--parameter", study_.parameter,
+                     "What is varied [default: the first that the scene has]");
+  }
+
   void add_plot() {
     auto* c = app_.add_subcommand("plot", "Draws the pictures of one run or several, finished or not");
     c->add_option("RUNDIR", folders_, "Run folders")->required();
@@ -122,6 +151,7 @@ class CommandLine {
   RunArguments run_;
   ResumeArguments resume_;
   ValidateArguments validate_;
+  StudyArguments study_;
   std::vector<std::filesystem::path> folders_;
   std::filesystem::path measured_;
   std::string what_;

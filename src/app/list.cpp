@@ -12,7 +12,6 @@
 #include "meltray/core/nearest.hpp"
 #include "meltray/materials/material.hpp"
 #include "meltray/scene/case_file.hpp"
-#include "meltray/scene/case_file.hpp"
 
 namespace meltray::app {
 
@@ -75,6 +74,8 @@ Lines methods() {
       {"imex", "implicit-explicit Runge-Kutta (ARKODE), order 2 to 5; the default, with order 2"},
       {"explicit", "explicit Runge-Kutta (ARKODE), order 2 to 5"},
       {"implicit", "diagonally implicit Runge-Kutta (ARKODE), order 2 to 5"},
+      {"multirate",
+       "conduction in fixed slow steps, the flow in explicit fast ones (ARKODE MRIStep), order 3 and 4"},
       {"euler", "forward-backward Euler, order 1: the classical scheme"},
   };
 }
@@ -108,9 +109,9 @@ int list(const std::string& what) {
   for (const auto& [name, lines] : topics) names.push_back(name);
   names.emplace_back("keys");
   if (!what.empty() && std::find(names.begin(), names.end(), what) == names.end())
-    throw UsageError(
-        fmt::format("list: found '{}'; allowed cases, materials, terms, methods, kernels, keys; did you mean '{}'?",
-                    what, nearest_name(what, names)));
+    throw UsageError(fmt::format(
+        "list: found '{}'; allowed cases, materials, terms, methods, kernels, keys; did you mean '{}'?", what,
+        nearest_name(what, names)));
   for (const auto& [name, lines] : topics) {
     if (!what.empty() && what != name) continue;
     fmt::print("{}\n", name);

@@ -107,7 +107,7 @@ void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& o
   for_sites(domain, [&](Vec3 x, std::uint64_t site) {
     const Body* body = body_at(domain, x);
     if (!body) return;
-    if (domain.jitter > 0)
+    if (domain.arrangement == Arrangement::jittered)
       for (int c = 0; c < k.dim; ++c) x[c] += domain.jitter * k.spacing * jitter(site, c, domain.seed);
     out.add(x, scene.material.enthalpy(body->temperature), mass, k.smoothing);
     const std::size_t i = out.size() - 1;

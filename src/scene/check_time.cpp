@@ -12,15 +12,13 @@ namespace {
 
 void check_order(const Scene& scene, const Document& document) {
   const IntegratorOptions& o = scene.time.integrator;
-  const bool euler = o.method == Method::euler;
-  if (euler ? o.order != 1 : o.order < 2)
+  const bool euler = o.method == Method::euler, multirate = o.method == Method::multirate;
+  if (euler ? o.order != 1 : multirate ? o.order != 3 && o.order != 4 : o.order < 2)
     refuse(document.place("time.order"), "time.order",
-           fmt::format("{} with method \"{}\"", o.order,
-                       euler                             ? "euler"
-                       : o.method == Method::imex        ? "imex"
-                       : o.method == Method::explicit_rk ? "explicit"
-                                                         : "implicit"),
-           euler ? "1" : "2 to 5");
+           fmt::format("{} with method \"{}\"", o.order, name_of(o.method)),
+           euler       ? "1"
+           : multirate ? "3 or 4"
+                       : "2 to 5");
 }
 
 /// Implicit terms need a method with an implicit part, explicit terms one with an explicit part.
@@ -43,10 +41,29 @@ void check_partitions(const Scene& scene, const Document& document) {
     if (t.integrator.method == Method::explicit_rk && c.choice == PartitionChoice::implicit_)
       refuse(document.place(key), key, "\"implicit\" with time.method = \"explicit\"",
              "\"auto\" or \"explicit\"");
+    if (t.integrator.method == Method::multirate && c.choice == PartitionChoice::implicit_)
+      refuse(document.place(key), key, "\"implicit\" with time.method = \"multirate\"",
+             "\"auto\" or \"explicit\"");
     if (t.integrator.method == Method::implicit_rk && c.choice == PartitionChoice::explicit_)
       refuse(document.place(key), key, "\"explicit\" with time.method = \"implicit\"",
              "\"auto\" or \"implicit\"");
   }
+}
+
+/// Multirate: conduction in slow steps of constant length, everything else in fast ones between them. The
+/// projection once a step would leave the fast steps without a pressure.
+void check_multirate(const Scene& scene, const Document& document) {
+  if (scene.time.integrator.method != Method::multirate) return;
+  const std::string with = " with time.method = \"multirate\"";
+  if (scene.time.integrator.fixed_step == 0)
+    refuse(document.place("time.method"), "time.fixed_step_s", "0" + with, "the slow step, > 0 [s]");
+  if (!scene.terms.conduction)
+    refuse(document.place("time.method"), "terms.conduction", "false" + with, "true: it is the slow term");
+  if (scene.time.conduction == PartitionChoice::explicit_)
+    refuse(document.place("splitting.conduction"), "splitting.conduction", "\"explicit\"" + with,
+           "\"auto\": it is the slow term");
+  if (scene.terms.pressure && scene.flow.projection == Projection::step)
+    refuse(document.place("splitting.projection"), "splitting.projection", "\"step\"" + with, "\"stage\"");
 }
 
 }  // namespace
@@ -55,6 +72,7 @@ void check_time(const Scene& scene, const Document& document) {
   const IntegratorOptions& o = scene.time.integrator;
   check_order(scene, document);
   check_partitions(scene, document);
+  check_multirate(scene, document);
   if (o.fixed_step > scene.time.end)
     refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
            fmt::format("at most time.end_s = {} [s]", scene.time.end));

@@ -30,8 +30,6 @@ Refusal refusal(const Key& key, const Value& value) {
 
 Refusal unknown_word(const Key& key, const Value& value) {
   const std::string* text = value.text();
-  if (text && std::find(key.planned.begin(), key.planned.end(), *text) != key.planned.end())
-    return {describe(value) + ", which is not available yet", key.allowed(), {}};
   return {describe(value), key.allowed(), text ? nearest_name(*text, key.words) : std::string()};
 }
 

@@ -61,7 +61,6 @@ struct Key {
   std::string sentence;
   Range range = {};
   std::vector<std::string> words = {};    ///< allowed words; for a number: words it takes as well
-  std::vector<std::string> planned = {};  ///< words with a meaning that is not available yet
   int entries = 0;                        ///< of a vector; 0: as many as the scene has dimensions
   bool is_required = false;               ///< where all needs hold
   bool is_alias = false;                  ///< another way to write part of another key: not in resolved cases

@@ -19,16 +19,23 @@ Need error_control() {
           }};
 }
 
+Need multirate() {
+  return {"time.method = \"multirate\"", {"time.method"}, [](const Scene& s, int) {
+            return s.time.integrator.method == Method::multirate;
+          }};
+}
+
 Key method() {
-  Key k = word<Method>("time.method",
-                       {{"euler", Method::euler},
-                        {"imex", Method::imex},
-                        {"explicit", Method::explicit_rk},
-                        {"implicit", Method::implicit_rk}},
-                       MELTRAY_AT(time.integrator.method),
-                       "Forward-backward Euler, or Runge-Kutta: implicit-explicit, explicit, implicit.");
-  k.planned = {"multirate"};
-  return k;
+  return word<Method>(
+      "time.method",
+      {{"euler", Method::euler},
+       {"imex", Method::imex},
+       {"explicit", Method::explicit_rk},
+       {"implicit", Method::implicit_rk},
+       {"multirate", Method::multirate}},
+      MELTRAY_AT(time.integrator.method),
+      "Forward-backward Euler, or Runge-Kutta: implicit-explicit, explicit, implicit, or conduction in "
+      "slow steps and the flow in fast ones.");
 }
 
 std::vector<Key> step_keys() {
@@ -42,13 +49,19 @@ std::vector<Key> step_keys() {
       number("time.end_s", "s", above(0), MELTRAY_AT(time.end), "End of the run.").required(),
       method(),
       integer("time.order", between(1, 5), at(&Options::order),
-              "Order of the method: 1 for euler, else 2 to 5.")
-          .otherwise("2; 1 for euler",
+              "Order of the method: 1 for euler, 3 or 4 for multirate, else 2 to 5.")
+          .otherwise("2; 1 for euler; 3 for multirate",
                      [](Scene& s, int, const Document&) {
-                       s.time.integrator.order = s.time.integrator.method == Method::euler ? 1 : 2;
+                       const Method m = s.time.integrator.method;
+                       s.time.integrator.order = m == Method::euler ? 1 : m == Method::multirate ? 3 : 2;
                      }),
       number("time.fixed_step_s", "s", at_least(0), at(&Options::fixed_step),
-             "Constant step without error control and without step limits; 0: steps are chosen."),
+             "Constant step without error control and without step limits; 0: steps are chosen. With "
+             "multirate the "
+             "slow step, which has to be given."),
+      number("time.fast_step_s", "s", at_least(0), at(&Options::fast_step),
+             "Largest step of the fast part; 0: its step limits.")
+          .only_if(multirate()),
       number("time.initial_step_s", "s", at_least(0), at(&Options::initial_step),
              "First step; 0: chosen from the step limits.")
           .only_if(free_steps()),
@@ -104,7 +117,13 @@ std::vector<Key> limit_keys() {
              "Way of the beam in one step.")
           .only_if(beam),
   };
-  for (Key& key : keys) key.needs.push_back(free_steps());
+  const Need limited = {"time.fixed_step_s = 0, or time.method = \"multirate\" with time.fast_step_s = 0",
+                        {"time.fixed_step_s", "time.method", "time.fast_step_s"},
+                        [](const Scene& s, int) {
+                          const IntegratorOptions& o = s.time.integrator;
+                          return o.fixed_step == 0 || (o.method == Method::multirate && o.fast_step == 0);
+                        }};
+  for (Key& key : keys) key.needs.push_back(limited);
   return keys;
 }
 
@@ -122,9 +141,11 @@ std::vector<Key> splitting_keys() {
   const Need cooling = {"terms.evaporation or terms.radiation",
                         {"terms.evaporation", "terms.radiation"},
                         [](const Scene& s, int) { return s.terms.evaporation || s.terms.radiation; }};
-  const Need implicit = {"a time.method other than \"explicit\"", {"time.method"}, [](const Scene& s, int) {
-                           return s.time.integrator.method != Method::explicit_rk;
-                         }};
+  const Need implicit = {
+      "a time.method other than \"explicit\" and \"multirate\"", {"time.method"}, [](const Scene& s, int) {
+        const Method m = s.time.integrator.method;
+        return m != Method::explicit_rk && m != Method::multirate;
+      }};
   return {
       partition("conduction", &Time::conduction,
                 "Where heat conduction is integrated; auto: the cheaper side.",

@@ -45,8 +45,16 @@ double expected_speed(const Scene& scene) {
   return speed > 0 ? speed : 1.0;
 }
 
-bool initially_implicit(PartitionChoice c) {
-  return c == PartitionChoice::implicit_;
+/// What the case file says, as far as the method leaves a choice; "auto" starts explicit.
+Partitions initial_partitions(const Time& time) {
+  const Method method = time.integrator.method;
+  if (!has_two_sides(method)) {
+    const bool all = method == Method::implicit_rk;
+    return {all || method == Method::multirate, all, all, all};
+  }
+  const auto implicit = [](PartitionChoice c) { return c == PartitionChoice::implicit_; };
+  return {implicit(time.conduction), implicit(time.viscosity), implicit(time.interface_viscosity),
+          implicit(time.evaporation)};
 }
 
 }  // namespace
@@ -70,9 +78,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   const double crossing = constants.spacing / expected_speed(scene);
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   divergence_time = kDivergenceCrossings * crossing;
-  partitions = {initially_implicit(scene.time.conduction), initially_implicit(scene.time.viscosity),
-                initially_implicit(scene.time.interface_viscosity),
-                initially_implicit(scene.time.evaporation)};
+  partitions = initial_partitions(scene.time);
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
@@ -87,6 +93,12 @@ bool Model::needs_surface() const {
 terms::ViscousChoice Model::viscous(bool implicit_part) const {
   return {scene_.terms.viscosity && partitions.viscosity == implicit_part,
           scene_.terms.interface_viscosity && partitions.interface_viscosity == implicit_part};
+}
+
+bool Model::has_explicit() const {
+  const Terms& t = scene_.terms;
+  return flows() || scene_.laser.has_value() || (t.conduction && !partitions.conduction) ||
+         ((t.evaporation || t.radiation) && !partitions.losses);
 }
 
 bool Model::has_implicit() const {

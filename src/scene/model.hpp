@@ -26,6 +26,11 @@ struct Partitions {
   bool operator==(const Partitions&) const = default;
 };
 
+/// True for methods with an explicit and an implicit side that terms can choose between.
+inline bool has_two_sides(Method m) {
+  return m == Method::imex || m == Method::euler;
+}
+
 /// The active terms of a scene as an ODE on the patch: y = [x | v | h | crossings] of the particles that move
 /// and those that exchange heat; f_E and f_I are sums over the terms of each partition.
 class Model : public OdeProblem {
@@ -43,9 +48,12 @@ class Model : public OdeProblem {
   /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06
   /// m/s^2, ...".
   std::string blame(Index i, double dt);
-  /// Chooses the partition of "auto" terms from their stiffness against the step expected next.
+  /// Chooses the partition of "auto" terms from their stiffness against the step expected next, where the
+  /// method has two sides; multirate methods have conduction on the slow side, which takes the place of the
+  /// implicit one.
   void choose_partitions(double dt);
 
+  bool has_explicit() const override;
   bool has_implicit() const override;
   bool implicit_is_linear() const override;
   void explicit_rate(double t, const double* y, double* rate) override;

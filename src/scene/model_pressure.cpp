@@ -171,6 +171,7 @@ StepLimit Model::stable_step(double t, const double* y) {
 }
 
 void Model::choose_partitions(double dt) {
+  if (!has_two_sides(scene_.time.integrator.method)) return;
   // An explicit term is stable below 1/rate; it moves to the implicit side when it would set the step, and
   // back when it is well below, so that the choice does not flicker.
   const auto choose = [&](PartitionChoice choice, bool& implicit_part, auto&& rate) {

@@ -205,7 +205,9 @@ void Simulation::archive(Archive& a) {
 std::vector<TermInfo> Simulation::terms() const {
   const Scene& s = impl_->scene;
   const Partitions& p = impl_->model.partitions;
-  const auto side = [](bool implicit_part, PartitionChoice c) {
+  const bool multirate = s.time.integrator.method == Method::multirate;
+  const auto side = [multirate](bool implicit_part, PartitionChoice c) {
+    if (multirate) return std::string(implicit_part ? "slow" : "fast");
     return std::string(implicit_part ? "implicit" : "explicit") +
            (c == PartitionChoice::automatic ? " (auto)" : "");
   };

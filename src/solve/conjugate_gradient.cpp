@@ -41,7 +41,8 @@ int floating_components(const SymmetricMatrix& a, const std::vector<double>& anc
                         std::vector<Index>& group) {
   const Index n = a.rows();
   group.assign(n, -1);
-  std::vector<Index> stack;
+  thread_local std::vector<Index> stack;  // kept: a right-hand side does not allocate
+  stack.clear();
   const auto flood = [&](Index number) {
     while (!stack.empty()) {
       const Index i = stack.back();

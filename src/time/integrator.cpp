@@ -11,6 +11,7 @@
 #include "meltray/core/errors.hpp"
 #include "time/arkode_driver.hpp"
 #include "time/euler.hpp"
+#include "time/multirate_driver.hpp"
 #include "time/step_control.hpp"
 
 namespace meltray {
@@ -40,12 +41,14 @@ void require(bool condition, std::string_view key, double found, std::string_vie
 }
 
 const IntegratorOptions& validated(const IntegratorOptions& o) {
-  if (o.method == Method::multirate) throw UsageError("method 'multirate' is not available yet");
   require(o.fixed_step >= 0 && std::isfinite(o.fixed_step), "fixed_step", o.fixed_step, ">= 0");
   require(o.initial_step >= 0 && std::isfinite(o.initial_step), "initial_step", o.initial_step, ">= 0");
   require(o.min_step >= 0, "min_step", o.min_step, ">= 0");
   require(o.max_step > 0 && o.max_step >= o.min_step, "max_step", o.max_step, "> 0 and >= min_step");
   require(o.fixed_step == 0 || o.fixed_step >= o.min_step, "fixed_step", o.fixed_step, "0 or >= min_step");
+  require(o.fast_step >= 0 && std::isfinite(o.fast_step), "fast_step", o.fast_step, ">= 0");
+  require(o.method != Method::multirate || o.fixed_step > 0, "fixed_step", o.fixed_step,
+          "> 0 with method 'multirate'");
   require(o.safety > 0 && o.safety < 1, "safety", o.safety, "between 0 and 1");
   require(o.max_growth > 1, "max_growth", o.max_growth, "> 1");
   return o;
@@ -102,10 +105,16 @@ void Integrator::Impl::prepare(const OdeProblem& problem) {
         "method 'implicit' treats every term implicitly, but this problem has explicit terms: move them to "
         "the "
         "implicit part or choose method 'imex'");
+  if (options.method == Method::multirate && !now.has_implicit)
+    throw UsageError(
+        "method 'multirate' needs a slow part, but this problem has none: choose method 'explicit'");
   stepper.reset();
   parts.reset();
   if (options.method == Method::euler)
     stepper = std::make_unique<integration::ForwardBackwardEuler>(space, now, counters);
+  else if (options.method == Method::multirate)
+    stepper = std::make_unique<integration::MultirateDriver>(context.get(), space, tableau, now,
+                                                             options.fast_step, counters);
   else
     stepper = std::make_unique<integration::ArkodeDriver>(context.get(), space, tableau, now,
                                                           controls_error(), counters);

@@ -124,6 +124,10 @@ Tableau tableau(Method method, int order) {
       return explicit_rk(order);
     case Method::implicit_rk:
       return implicit_rk(order);
+    case Method::multirate:
+      if (order != 3 && order != 4)
+        throw UsageError(fmt::format("method 'multirate' has no order {} (allowed: 3, 4)", order));
+      return explicit_rk(order);
     default:
       throw UsageError(fmt::format("method '{}' has no Butcher table", name_of(method)));
   }

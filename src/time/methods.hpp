@@ -26,7 +26,8 @@ struct Tableau {
   int error_exponent() const { return (order < embedding_order ? order : embedding_order) + 1; }
 };
 
-/// Coefficients of method and order. Throws UsageError for an order that does not exist.
+/// Coefficients of method and order; of a multirate method those of its fast part. Throws UsageError for an
+/// order that does not exist.
 Tableau tableau(Method method, int order);
 
 /// True when nothing uses the rate of stage `stage` (with_embedding: not even the error estimate).

@@ -35,11 +35,23 @@ struct ValidateArguments {
   std::optional<std::filesystem::path> json;
 };
 
+struct StudyArguments {
+  std::string kind;       ///< "work-precision", "splitting" or "stability"
+  std::string what;       ///< scene of the studies; for "stability" a case file as well
+  std::string parameter;  ///< of "stability"; empty: the first that the scene has
+  std::optional<std::filesystem::path>
+      out;  ///< of results and of the runs that are kept; default runs/studies/<id>
+  std::optional<std::filesystem::path> json;
+  bool small = false;
+  int threads = 0;
+};
+
 int run(const RunArguments& arguments);
 int resume(const ResumeArguments& arguments);
 int check(const std::filesystem::path& case_file, const std::vector<std::string>& set);
 int list(const std::string& what);  ///< "", "cases", "materials", "terms", "methods" or "kernels"
 int validate(const ValidateArguments& arguments);
+int study(const StudyArguments& arguments);
 int plot(const std::vector<std::filesystem::path>& run_folders);
 int compare(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& measured);
 

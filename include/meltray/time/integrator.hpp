@@ -29,7 +29,8 @@ struct StateField {
   std::vector<std::uint8_t> active;
 };
 
-/// y' = f_E(t, y) + f_I(t, y). Rates overwrite `rate`. To reject the step, write NaN into `rate`.
+/// y' = f_E(t, y) + f_I(t, y). Rates overwrite `rate`. To reject the step, write NaN into `rate`. Multirate
+/// methods take f_E as the fast part and f_I as the slow one, both explicitly.
 class OdeProblem {
  public:
   virtual ~OdeProblem() = default;
@@ -50,8 +51,9 @@ enum class Method { euler, imex, explicit_rk, implicit_rk, multirate };
 
 struct IntegratorOptions {
   Method method = Method::imex;
-  int order = 2;            ///< imex 2 to 5, explicit_rk 2 to 5, implicit_rk 2 to 5; euler is 1
-  double fixed_step = 0;    ///< > 0: constant step without error control [s]
+  int order = 2;          ///< imex 2 to 5, explicit_rk 2 to 5, implicit_rk 2 to 5; multirate 3, 4; euler is 1
+  double fixed_step = 0;  ///< > 0: constant step without error control (multirate: the slow step) [s]
+  double fast_step = 0;   ///< multirate: largest fast step [s]; 0: stability limit of the fast part
   double initial_step = 0;  ///< first step [s]; 0: chosen from the stability limit
   double max_step = 1e300;  ///< [s]
   double min_step = 1e-14;  ///< below this the run fails: NumericalFailure [s]

@@ -150,8 +150,11 @@ solve::SolveReport Projection::solve(const Stage& s, const std::vector<double>& 
     x_[r] = s.patch->pressure[i];
   });
   const auto remove_means = [&](std::vector<double>& a) {
-    std::vector<double> sum(floating_ + 1, 0.0);
-    std::vector<Index> count(floating_ + 1, 0);
+    // Kept: a right-hand side does not allocate.
+    thread_local std::vector<double> sum;
+    thread_local std::vector<Index> count;
+    sum.assign(floating_ + 1, 0.0);
+    count.assign(floating_ + 1, 0);
     for (Index r = 0; r < rows(); ++r) {
       sum[group_[r]] += a[r];
       ++count[group_[r]];

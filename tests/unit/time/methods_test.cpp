@@ -101,8 +101,6 @@ TEST_CASE("methods: what does not exist is refused") {
   o.order = 6;
   CHECK_THROWS_AS(Integrator(o), UsageError);
   o.order = 2;
-  o.method = Method::multirate;
-  CHECK_THROWS_AS(Integrator(o), UsageError);
   o.method = Method::implicit_rk;
   Integrator integrator(o);
   test::Manufactured problem;

@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Studies from outside: one small study of each kind, what it finds, and that a study goes on where it stopped.
+
+usage: study_test.py PROGRAM [unittest options]
+"""
+import csv
+import json
+
+from meltray_runner import REPOSITORY, Scratch, main, meltray
+
+
+class Studies(Scratch):
+    def study(self, kind, scene, *options):
+        """Runs a small study; its JSON, and its words."""
+        out = self.folder / "out"
+        done = meltray("study", kind, scene, "--small", "--threads", "1", "--out", out, *options)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        data = next(out.glob(f"{kind}*.json"))
+        self.assertTrue(data.with_suffix(".png").is_file())
+        with open(data.with_suffix(".csv"), newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        found = json.loads(data.read_text(encoding="utf-8"))
+        self.assertEqual([list(row) for row in table], [list(row) for row in found["rows"]])
+        return found, done.stdout
+
+    def test_work_precision(self):
+        found, words = self.study("work-precision", "heat_melting", "--json", self.folder / "copy.json")
+        self.assertEqual(json.loads((self.folder / "copy.json").read_text(encoding="utf-8")), found)
+        methods = {row["method"] for row in found["rows"]}
+        self.assertLessEqual({"euler", "imex 2", "imex 4", "explicit 2", "implicit 2", "multirate 3"}, methods)
+        field = [r for r in found["rows"] if r["quantity"] == "temperature [K]"]
+
+        def errors(method):
+            return [r["error"] for r in field if r["method"] == method and r["step_s"] > 0]
+
+        # Halved steps: a first-order method halves its error; the second-order pair is better at every step.
+        first = errors("euler")
+        for coarse, fine in zip(first, first[1:]):
+            self.assertAlmostEqual(coarse / fine, 2, delta=0.2)
+        for low, high in zip(first, errors("imex 2")):
+            self.assertLess(high, low / 10)
+        # Steps of 200 us are beyond the limit of explicit conduction.
+        self.assertGreater(errors("explicit 2")[0], 1)
+        for reference in found["references"]:
+            self.assertLess(reference["uncertainty"], 1e-5)
+        self.assertIn("wins in both", words)
+        # The same again computes nothing.
+        again, words = self.study("work-precision", "heat_melting")
+        self.assertEqual(again["rows"], found["rows"])
+        runs, kept = (int(words.split(text)[0].split()[-1]) for text in (" runs,", " of them kept"))
+        self.assertEqual(runs, kept)
+
+    def test_splitting(self):
+        found, words = self.study("splitting", "heat_melting")
+        rows = {r["assignment"]: r for r in found["rows"]}
+        explicit, implicit = rows["all explicit"], rows["implicit conduction"]
+        # Explicit conduction has a limit within the steps that are tried, implicit conduction has none.
+        self.assertFalse(explicit["larger_not_tried"])
+        self.assertTrue(implicit["larger_not_tried"])
+        self.assertGreater(implicit["largest_stable_step_s"], explicit["largest_stable_step_s"])
+        for row in (explicit, implicit):
+            self.assertGreater(row["order"], 1.5)
+        self.assertIn("recommended for an error of", words)
+        self.assertRegex(words, "auto chooses .*: (agrees|differs)")
+
+    def test_stability(self):
+        found, words = self.study("stability", "static_pool", "--parameter", "recoil")
+        self.assertEqual({r["verdict"] for r in found["rows"]} - {"stable", "degraded", "failed"}, set())
+        usual = [r for r in found["rows"] if r["step_factor"] == 1]
+        self.assertTrue(all(r["verdict"] == "stable" for r in usual), usual)
+
+    def test_a_case_of_ones_own(self):
+        case = REPOSITORY / "validation" / "studies" / "drop.toml"
+        found, words = self.study("stability", case, "--parameter", "seed")
+        self.assertEqual(found["scene"], "drop")
+        self.assertEqual({r["parameter"] for r in found["rows"]}, {"seed"})
+
+    def test_refusals(self):
+        for arguments, message in ((("study",), "subcommand"), (("study", "splitting"), "ID"),
+                                   (("study", "splitting", "dorp"), "did you mean 'drop'"),
+                                   (("study", "work-precision", "static_pool"), "study stability"),
+                                   (("study", "stability", "drop", "--parameter", "power"), "surface_tension")):
+            with self.subTest(arguments):
+                done = meltray(*arguments, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn(message, done.stderr)
+
+
+if __name__ == "__main__":
+    main()
