@@ -9,6 +9,7 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/presets.hpp"
 #include "meltray/scene/simulation.hpp"
 
 namespace meltray::app {
@@ -237,7 +238,7 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
   heading("resolved case");
   fmt::print("{}", scene::write_case(scene));
   heading("model");
-  line("row of Table 1", scene.model);
+  line("row of Table 1", scene::row_of_table(scene));
   std::vector<Limit> limits;
   for (const StepLimit& l : simulation.step_limits()) limits.push_back({std::string(l.name), l.seconds});
   print_terms(simulation);

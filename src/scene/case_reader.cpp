@@ -23,9 +23,9 @@ void for_each_key(const Scene& scene, F&& f) {
 }
 
 /// Terms that are not smooth or have no stiff part: they have no entry in [splitting].
-constexpr std::array<std::string_view, 10> kAlwaysExplicit = {
-    "pressure", "surface_tension", "marangoni", "wetting", "recoil",
-    "laser",    "buoyancy",        "gravity",   "melting", "radiation"};
+constexpr std::array<std::string_view, 11> kAlwaysExplicit = {
+    "pressure", "surface_tension", "marangoni",           "wetting", "recoil", "laser", "buoyancy", "gravity",
+    "melting",  "radiation",       "artificial_viscosity"};
 
 void refuse_fixed_splitting(const Entry& entry) {
   constexpr std::string_view prefix = "splitting.";
@@ -180,6 +180,7 @@ Scene build(const Document& document) {
   check_geometry(scene, document);
   check_material(scene, document);
   check_terms(scene, document);
+  check_flow(scene, document);
   check_time(scene, document);
   check_laser(scene, document);
   return scene;

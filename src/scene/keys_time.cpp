@@ -74,6 +74,9 @@ std::vector<Key> accuracy_keys() {
              "Absolute error of positions allowed in a step."),
       number("time.atol_velocity_m_s", "m/s", above(0), MELTRAY_AT(time.atol_velocity),
              "Absolute error of velocities allowed in a step."),
+      number("time.atol_density", "density", above(0), MELTRAY_AT(time.atol_density),
+             "Absolute error of densities allowed in a step.")
+          .only_if(solved_by(FlowSolver::wcsph)),
       number("time.atol_temperature_k", "K", above(0), MELTRAY_AT(time.atol_temperature),
              "Absolute error of temperatures allowed in a step."),
   };
@@ -89,13 +92,17 @@ std::vector<Key> limit_keys() {
   const Need beam = {"[laser]", {}, [](const Scene& s, int) { return s.laser.has_value(); }};
   const Range range = above_to(0, 10);
   std::vector<Key> keys = {
+      number("time.cfl_acoustic", "", range, MELTRAY_AT(time.cfl_acoustic), "Step over h / (c + |v|).")
+          .only_if(solved_by(FlowSolver::wcsph)),
       number("time.cfl_advective", "", range, MELTRAY_AT(time.cfl_advective), "Step over h / |v|."),
       number("time.cfl_capillary", "", range, MELTRAY_AT(time.cfl_capillary),
              "Step over sqrt(rho h^3 / (2 pi sigma)).")
           .only_if(tension),
-      number("time.cfl_viscous", "", range, MELTRAY_AT(time.cfl_viscous), "Step of explicit viscosity over its stability bound (Gershgorin).")
+      number("time.cfl_viscous", "", range, MELTRAY_AT(time.cfl_viscous),
+             "Step of explicit viscosity over its stability bound (Gershgorin).")
           .only_if(viscous),
-      number("time.cfl_thermal", "", range, MELTRAY_AT(time.cfl_thermal), "Step of explicit conduction over its stability bound (Gershgorin).")
+      number("time.cfl_thermal", "", range, MELTRAY_AT(time.cfl_thermal),
+             "Step of explicit conduction over its stability bound (Gershgorin).")
           .only_if(term("conduction", &Terms::conduction)),
       number("time.cfl_force", "", range, MELTRAY_AT(time.cfl_force), "Step over sqrt(h / |a|)."),
       number("time.beam_travel", "focal radius", range, MELTRAY_AT(time.beam_travel),
@@ -137,7 +144,8 @@ std::vector<Key> splitting_keys() {
           "splitting.projection", {{"step", Projection::step}, {"stage", Projection::stage}},
           MELTRAY_AT(flow.projection),
           "Pressure is solved for once after each step, or in every stage (which keeps the order).")
-          .only_if(term("pressure", &Terms::pressure)),
+          .only_if(term("pressure", &Terms::pressure))
+          .only_if(solved_by(FlowSolver::isph)),
       number("splitting.linear_tolerance", "", above_to(0, 0.1), MELTRAY_AT(time.linear_tolerance),
              "Relative residual at which implicit solves end.")
           .only_if(implicit),

@@ -50,7 +50,7 @@ Vec3 Simulation::Impl::liquid_momentum() const {
 void Simulation::Impl::select() {
   const auto timer = timers.measure(Part::neighbours);
   const bool everything = scene.heat.bulk_interval <= 0;
-  if (lists_valid && everything && list_motion < 0.5 * skin(scene) * constants.spacing) {
+  if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     reload(particles, model.patch);
   } else {
@@ -73,6 +73,7 @@ void Simulation::Impl::select() {
     model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, extra);
     ++counters.list_builds;
     lists_valid = true;
+    deposited = false;
     list_motion = 0;
   }
   const Index n = model.patch.size();
@@ -96,16 +97,19 @@ StepInfo Simulation::Impl::step(double t_stop) {
   begin();
   if (laser && laser->due(time)) {
     const auto timer = timers.measure(Part::laser);
-    const bool first = laser->lit().empty();
+    const bool everything = scene.heat.bulk_interval <= 0, first = laser->lit().empty();
+    const std::vector<Index> lit = everything ? std::vector<Index>() : laser->lit();
     laser->trace(time, selector, particles);
-    lists_valid = lists_valid && !first;
+    deposited = false;
+    lists_valid = lists_valid && !first && (everything || lit == laser->lit());
   }
   select();
   model.pack(y, fields);
   model.evaluate(time, y.data());
-  if (laser) {
+  if (laser && !(deposited && model.weakly_compressible())) {
     const auto timer = timers.measure(Part::laser);
     laser->deposit(model.stage, model.laser_power);
+    deposited = true;
   }
   if (counters.steps % kPartitionSteps == 0) {
     double expected = integrator.proposed_step();
@@ -121,8 +125,10 @@ StepInfo Simulation::Impl::step(double t_stop) {
     const auto timer = timers.measure(Part::integrator);
     report = integrator.step(model, fields, time, t_stop, y);
   }
-  if (model.flows() && scene.flow.projection == Projection::step)
+  if (model.projects_steps())
     model.project(report.t, report.dt, y);
+  else if (model.weakly_compressible())
+    model.unpack(y.data());
   else
     model.evaluate(report.t, y.data());
   check(report);
@@ -244,6 +250,7 @@ void Simulation::Impl::change_phases(double) {
       selector.melted(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::liquid);
       particles.flags[g] |= kWasLiquid;
+      if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
       lists_valid = lists_valid && !model.flows();
     } else if (model.patch.liquid[i] && h <= solidus) {
       bool touches = !model.flows();
@@ -260,6 +267,7 @@ void Simulation::Impl::change_phases(double) {
       selector.solidified(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::solid);
       particles.flags[g] |= kResolidified;
+      if (model.weakly_compressible()) particles.density[g] = constants.density;
       lists_valid = lists_valid && !model.flows();
     }
   }

@@ -16,8 +16,12 @@ namespace meltray::scene {
 /// and where they are built anew for every step (only what enters the edge of the support during a step is
 /// missed).
 inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05;
+/// Steps at the speed of sound are short: lists outlast them, also where particles melt and patches move.
+inline bool keeps_lists(const Scene& scene) {
+  return scene.heat.bulk_interval <= 0 || (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph);
+}
 inline double skin(const Scene& scene) {
-  return scene.heat.bulk_interval > 0 ? kSkinOfStep : kSkin;
+  return keeps_lists(scene) ? kSkin : kSkinOfStep;
 }
 
 /// State of a simulation; its steps are in simulation.cpp, what it reports and saves in
@@ -64,6 +68,7 @@ struct Simulation::Impl {
   std::int64_t bulk_exchanges = 0;
   double time = 0, next_bulk = 0, bulk_from = 0, last_dt = 0, evaporative_loss = 0;
   bool begun = false, lists_valid = false;
+  bool deposited = false;  ///< the laser power of the present patch is known
   double list_motion = 0;
 
   std::vector<double> y;

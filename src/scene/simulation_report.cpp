@@ -182,7 +182,7 @@ void Simulation::archive(Archive& a) {
 
   // From here on a run that goes on and one that is resumed are in the same state: everything derived is
   // rebuilt.
-  s.lists_valid = false;
+  s.lists_valid = s.deposited = false;
   s.bulk_exchanges = 0;
   s.model.invalidate();
   if (!a.loading()) {
@@ -212,13 +212,19 @@ std::vector<TermInfo> Simulation::terms() const {
   const auto info = [](const char* name, bool active, std::string where) {
     return TermInfo{name, active, active ? std::move(where) : "skipped: not in this scene"};
   };
-  const std::string projected =
-      s.flow.projection == Projection::step ? "projected once a step" : "projected in every stage";
+  const std::string projected = impl_->model.weakly_compressible()      ? "explicit"
+                                : s.flow.projection == Projection::step ? "projected once a step"
+                                                                        : "projected in every stage";
   return {info("conduction", s.terms.conduction, side(p.conduction, s.time.conduction)),
           info("viscosity", s.terms.viscosity, side(p.viscosity, s.time.viscosity)),
           info("interface_viscosity", s.terms.interface_viscosity,
                side(p.interface_viscosity, s.time.interface_viscosity)),
           info("pressure", s.terms.pressure, projected),
+          info("density_diffusion",
+               impl_->model.weakly_compressible() && s.flow.density_diffusion != DensityDiffusion::none,
+               "explicit"),
+          info("artificial_viscosity", s.terms.artificial_viscosity, "explicit"),
+          info("thermal_expansion", s.flow.thermal_expansion, "explicit"),
           info("surface_tension", s.terms.surface_tension, projected),
           info("wetting", s.terms.wetting, projected),
           info("marangoni", s.terms.marangoni, "explicit"),

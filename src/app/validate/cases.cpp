@@ -16,6 +16,10 @@ const std::vector<ValidationCase>& validation_cases() {
       {"laplace_drop", "drop at rest: Laplace pressure and spurious currents", laplace_drop},
       {"recoil_flat_plate", "pool at rest under a uniform recoil pressure: pressure, wall force, rest",
        recoil_flat_plate},
+      {"hydrostatic", "tank at rest: pressure, speed and density, both solvers, both density diffusions",
+       hydrostatic},
+      {"dam_break_martin_moyce", "collapse of a column: front over time, both solvers",
+       dam_break_martin_moyce},
   };
   return cases;
 }

@@ -30,5 +30,7 @@ Rows stefan_two_phase_iron(const Setting& setting);
 Rows taylor_green(const Setting& setting);
 Rows laplace_drop(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
+Rows hydrostatic(const Setting& setting);
+Rows dam_break_martin_moyce(const Setting& setting);
 
 }  // namespace meltray::app
