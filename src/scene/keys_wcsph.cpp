@@ -56,7 +56,7 @@ std::vector<Key> solver_keys() {
           .only_if(wcsph)
           .only_if(diffusing),
       number("flow.artificial_viscosity", "", above_to(0, 2), MELTRAY_AT(flow.artificial_viscosity),
-             "Coefficient alpha of the artificial viscosity.")
+             "Coefficient alpha of the artificial viscosity; 1 is of the strength of interface viscosity.")
           .only_if({"terms.artificial_viscosity = true",
                     {"terms.artificial_viscosity", "model"},
                     [](const Scene& s, int) { return s.terms.artificial_viscosity; }}),

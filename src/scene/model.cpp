@@ -153,7 +153,8 @@ void Model::evaluate(double t, const double* y) {
   if (geometry_valid_ && still && same(constants_.dim * nm, h) && same_h && t == stage.t) return;
   // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
   // coefficients that rest on them are frozen at the start of the step, and renewed for the projection. A
-  // weakly compressible step is so short that only pairs and pressures are renewed in its stages.
+  // weakly compressible step is so short that only the pairs of moving particles and pressures are renewed in
+  // its stages.
   const bool same_pairs = geometry_valid_ && known && (projects_steps() || still);
   const bool same_surface = geometry_valid_ && (weakly_compressible() || same_pairs);
   last_y_.assign(y, y + n);
@@ -162,7 +163,10 @@ void Model::evaluate(double t, const double* y) {
 
   if (!same_pairs) {
     const auto timer = timers_.measure(Part::neighbours);
-    pairs.refresh(patch, constants_.kernel);
+    if (weakly_compressible() && geometry_valid_)
+      pairs.refresh(patch, constants_.kernel, stage.moving);
+    else
+      pairs.refresh(patch, constants_.kernel);
   }
   const auto update_temperature = [&](Index i) {
     stage.temperature[i] = constants_.material.temperature(patch.h[i]);

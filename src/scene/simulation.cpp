@@ -53,6 +53,10 @@ void Simulation::Impl::select() {
   if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     reload(particles, model.patch);
+    if (model.weakly_compressible()) {  // nothing melted: the stage stands as well
+      model.invalidate();
+      return;
+    }
   } else {
     if (everything)
       selector.select_all(particles, model.patch);

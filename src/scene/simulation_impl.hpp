@@ -13,15 +13,17 @@
 namespace meltray::scene {
 
 /// Share of the spacing by which lists reach beyond the support: where lists are kept while particles move,
-/// and where they are built anew for every step (only what enters the edge of the support during a step is
-/// missed).
-inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05;
-/// Steps at the speed of sound are short: lists outlast them, also where particles melt and patches move.
+/// where they are built anew for every step (only what enters the edge of the support during a step is
+/// missed), and where a patch follows the melt in steps at the speed of sound, many of which a list outlasts.
+inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05, kSkinOfSound = 0.5;
+inline bool follows_melt(const Scene& scene) {
+  return scene.heat.bulk_interval > 0;
+}
 inline bool keeps_lists(const Scene& scene) {
-  return scene.heat.bulk_interval <= 0 || (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph);
+  return !follows_melt(scene) || (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph);
 }
 inline double skin(const Scene& scene) {
-  return keeps_lists(scene) ? kSkin : kSkinOfStep;
+  return !follows_melt(scene) ? kSkin : keeps_lists(scene) ? kSkinOfSound : kSkinOfStep;
 }
 
 /// State of a simulation; its steps are in simulation.cpp, what it reports and saves in

@@ -136,6 +136,16 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
 }
 
 void PairList::refresh(const Patch& patch, KernelType kernel) {
+  refresh_rows(patch, kernel, rows(), [](std::ptrdiff_t i) { return static_cast<Index>(i); });
+}
+
+void PairList::refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows) {
+  refresh_rows(patch, kernel, static_cast<Index>(rows.size()),
+               [&](std::ptrdiff_t k) { return rows[static_cast<std::size_t>(k)]; });
+}
+
+template <class RowAt>
+void PairList::refresh_rows(const Patch& patch, KernelType kernel, Index count, RowAt&& row_at) {
   std::array<double, 3> inverse_period{};
   for (int c = 0; c < dim_; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
   with_dim(dim_, [&](auto d) {
@@ -148,7 +158,8 @@ void PairList::refresh(const Patch& patch, KernelType kernel) {
       double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
       double *const w = w_.data(), *const f = f_.data();
       const auto period = period_;
-      parallel_for(rows(), [&](Index i) {
+      parallel_for(count, [&](std::ptrdiff_t n) {
+        const Index i = row_at(n);
         const double hi = h[i];
         double xi[D];
         for (int c = 0; c < D; ++c) xi[c] = x[c][i];

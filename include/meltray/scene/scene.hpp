@@ -85,7 +85,7 @@ struct Flow {
   Tension tension = Tension::artificial_stress;
   DensityDiffusion density_diffusion = DensityDiffusion::antuono;
   double diffusion_coefficient = 0.1;  ///< delta of the density diffusion
-  double artificial_viscosity = 0.02;  ///< alpha of Monaghan's viscosity
+  double artificial_viscosity = 1;     ///< alpha of Monaghan's viscosity
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
@@ -132,7 +132,7 @@ struct Time {
   double rtol = 1e-3;
   double atol_position = 0.05;  ///< fraction of the spacing
   double atol_velocity = 0.1;   ///< [m/s]
-  double atol_density = 1e-3;   ///< fraction of the density
+  double atol_density = 5e-3;   ///< fraction of the density
   double atol_temperature = 5;  ///< [K], turned into enthalpy with the solid's heat capacity
   double cfl_acoustic = 0.25;
   double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_force = 0.25;

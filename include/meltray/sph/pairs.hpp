@@ -43,6 +43,8 @@ class PairList {
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
   /// Evaluates x_ij, W_ij and F_ij at the patch's current positions.
   void refresh(const Patch& patch, KernelType kernel);
+  /// The same for some rows only; the others keep the geometry that they have.
+  void refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows);
 
   Index rows() const { return static_cast<Index>(start_.size()) - 1; }
   Index begin(Index i) const { return start_[i]; }
@@ -122,6 +124,9 @@ class PairList {
     std::vector<double> candidate_h, r2;
   };
   void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
+
+  template <class RowAt>
+  void refresh_rows(const Patch& patch, KernelType kernel, Index count, RowAt&& row_at);
 
   int dim_ = 3;
   std::array<double, 3> period_{};
