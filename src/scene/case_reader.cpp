@@ -8,6 +8,7 @@
 
 #include "meltray/core/nearest.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/optics.hpp"
 #include "scene/case_check.hpp"
 #include "scene/keys.hpp"
 
@@ -135,8 +136,9 @@ void derive_defaults(const Document& document, Scene& scene) {
     if (key.derive && !document.given(path)) key.derive(scene, i, document);
   });
   if (scene.laser) {
-    scene.laser->trace.index_solid = scene.material.index_solid;
-    scene.laser->trace.index_liquid = scene.material.index_liquid;
+    const auto index = laser_index(scene);
+    scene.laser->trace.index_solid = index.solid;
+    scene.laser->trace.index_liquid = index.liquid;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/expected_flow.hpp"
+#include "meltray/scene/expected_flow.hpp"
 
 #include <algorithm>
 #include <cmath>

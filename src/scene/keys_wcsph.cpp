@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/expected_flow.hpp"
+#include "meltray/scene/expected_flow.hpp"
 #include "scene/keys_build.hpp"
 
 namespace meltray::scene {
@@ -36,6 +36,13 @@ std::vector<Key> solver_keys() {
       of_row(boolean("flow.thermal_expansion", MELTRAY_AT(flow.thermal_expansion),
                      "Reference density follows the temperature, Eq. (7); replaces terms.buoyancy."),
              "false", &Preset::thermal_expansion, MELTRAY_AT(flow.thermal_expansion))
+          .only_if(wcsph),
+      word<PressureGradient>(
+          "flow.pressure_gradient",
+          {{"difference", PressureGradient::difference}, {"sum", PressureGradient::sum}},
+          MELTRAY_AT(flow.pressure_gradient),
+          "Pressure gradient inside the melt: differences, at rest under uniform pressure "
+          "whatever the disorder, or sums as in Eq. (3), which conserve momentum pair by pair.")
           .only_if(wcsph),
       word<Tension>("flow.tension",
                     {{"artificial_stress", Tension::artificial_stress},

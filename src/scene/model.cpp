@@ -8,7 +8,7 @@
 
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
-#include "scene/expected_flow.hpp"
+#include "meltray/scene/expected_flow.hpp"
 
 namespace meltray::scene {
 

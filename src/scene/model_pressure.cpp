@@ -103,7 +103,7 @@ std::string Model::blame(Index i, double dt) {
   update_surface_pressure();
   if (weakly_compressible()) {
     pull("pressure", [&](auto& a) { weak_->force.add_acceleration(stage, a); });
-    pull("surface force", [&](auto& a) { terms::add_surface_force(stage, a); });
+    pull("surface force", [&](auto& a) { weak_->force.add_surface_force(stage, a); });
     if (weak_->artificial.alpha > 0)
       pull("artificial viscosity", [&](auto& a) { weak_->artificial.add_acceleration(stage, a); });
   } else {

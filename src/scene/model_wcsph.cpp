@@ -28,7 +28,9 @@ WeaklyCompressible::WeaklyCompressible(const Scene& scene) {
   const terms::Tension tension = tension_of(flow.tension);
   state = {c, flow.thermal_expansion, tension, scene.terms.gravity ? scene.domain.gravity : 0.0};
   continuity = {c};
-  force = {tension};
+  force = {flow.pressure_gradient == PressureGradient::sum ? terms::GradientForm::sum
+                                                           : terms::GradientForm::difference,
+           tension};
   diffusion.sound_speed = c;
   diffusion.coefficient = flow.density_diffusion == DensityDiffusion::none ? 0.0 : flow.diffusion_coefficient;
   diffusion.form = flow.density_diffusion == DensityDiffusion::antuono
@@ -47,7 +49,7 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   if (w.diffusion.coefficient > 0) w.diffusion.add_rate(stage, rates.density);
   Vec3 before = total_force();
   w.force.add_acceleration(stage, rates.acceleration);
-  terms::add_surface_force(stage, rates.acceleration);
+  w.force.add_surface_force(stage, rates.acceleration);
   crossings.pressure = total_force() - before;
   if (w.artificial.alpha > 0) {
     before = total_force();

@@ -16,8 +16,8 @@ constexpr int kExchangesPerBuild = 5;
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
-/// Partitions of "auto" terms are reconsidered every so many steps.
-constexpr std::int64_t kPartitionSteps = 10;
+/// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
+constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
 
 }  // namespace
 
@@ -156,6 +156,8 @@ StepInfo Simulation::Impl::step(double t_stop) {
     list_motion += motion;
     if (laser) laser->add_motion(motion);
   }
+  if (model.weakly_compressible() && counters.steps % kDensitySteps == 0)
+    largest_density_variation = std::max(largest_density_variation, density_variation());
   ++counters.limiter[std::string(report.limiter)];
   return {time, report.dt, std::string(report.limiter)};
 }

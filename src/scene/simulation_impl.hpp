@@ -56,6 +56,7 @@ struct Simulation::Impl {
   void remove_escaped();
   void exchange_bulk(double until);
   double stored_energy() const;
+  double density_variation() const;
   Vec3 liquid_momentum() const;
 
   Scene scene;
@@ -69,6 +70,7 @@ struct Simulation::Impl {
   terms::BulkConduction bulk;
   std::int64_t bulk_exchanges = 0;
   double time = 0, next_bulk = 0, bulk_from = 0, last_dt = 0, evaporative_loss = 0;
+  double largest_density_variation = 0;
   bool begun = false, lists_valid = false;
   bool deposited = false;  ///< the laser power of the present patch is known
   double list_motion = 0;

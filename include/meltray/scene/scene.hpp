@@ -21,12 +21,14 @@ enum class FaceKind { free, wall, periodic };
 enum class ThermalKind { adiabatic, temperature, flux };
 enum class FlowSolver { isph, wcsph };
 enum class SolidModel { fixed, elastic };
+enum class PressureGradient { sum, difference };
 enum class Tension { full, none, artificial_stress };
 enum class DensityDiffusion { none, molteni_colagrossi, antuono };
 enum class Projection { step, stage };
 enum class SurfaceEntry { csf, pressure };
 enum class RecoilOnset { smooth, cutoff, ambient };
 enum class PartitionChoice { automatic, explicit_, implicit_ };
+enum class Optics { by_phase, solid, hot_melt };
 enum class VelocityField { none, taylor_green, rotation };
 enum class ShapeKind { box, ball };
 
@@ -82,6 +84,7 @@ struct Flow {
   SolidModel solid = SolidModel::fixed;
   double sound_speed = 0;          ///< numerical, of the equation of state [m/s]
   bool thermal_expansion = false;  ///< reference density follows the temperature
+  PressureGradient pressure_gradient = PressureGradient::difference;
   Tension tension = Tension::artificial_stress;
   DensityDiffusion density_diffusion = DensityDiffusion::antuono;
   double diffusion_coefficient = 0.1;  ///< delta of the density diffusion
@@ -121,8 +124,9 @@ struct Heat {
 struct Laser {
   laser::BeamSpec beam;
   laser::TraceOptions trace;
-  double retrace_interval = 5e-6;  ///< [s]
-  double retrace_motion = 0.5;     ///< retrace when a surface particle moved by this fraction of the spacing
+  Optics optics = Optics::by_phase;  ///< which refractive index the metal has
+  double retrace_interval = 5e-6;    ///< [s]
+  double retrace_motion = 0.5;  ///< retrace when a surface particle moved by this fraction of the spacing
 };
 
 /// [time] and [splitting].

@@ -83,8 +83,10 @@ Rows hydrostatic(const Setting& setting) {
         if (coarse) row.order = observed_order(coarse_error, row.error, 2);
         rows.push_back(row);
       };
-      add(limit_row(name + "interior pressure L2", tank.pressure, 0.01, how), coarse ? coarse->pressure : 0, true);
-      add(limit_row(name + "largest speed / sqrt(g H)", tank.speed, 1e-3, how), coarse ? coarse->speed : 0, true);
+      add(limit_row(name + "interior pressure L2", tank.pressure, 0.01, how), coarse ? coarse->pressure : 0,
+          true);
+      add(limit_row(name + "largest speed / sqrt(g H)", tank.speed, 1e-3, how), coarse ? coarse->speed : 0,
+          true);
       add(limit_row(name + "pressure bias below the surface", tank.bias, 0.01, how),
           coarse ? std::abs(coarse->bias) : 0, false);
       if (tank.density > 0)

@@ -15,6 +15,8 @@ constexpr double kUnderTension = 0.2, kUnderPressure = 0.01;
 void PressureForce::add_acceleration(const Stage& s, const MutField& acceleration) const {
   const double scale = 1 / s.constants->lattice.second_moment;
   const double *const p = s.patch->pressure.data(), *const volume = s.volume.data();
+  const double own = form == GradientForm::sum ? 1 : -1;
+  const double under_pressure = form == GradientForm::sum ? kUnderPressure : 0.0;
   const bool stressed = tension == Tension::artificial_stress;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
@@ -26,13 +28,13 @@ void PressureForce::add_acceleration(const Stage& s, const MutField& acceleratio
         const double pi = p[i];
         const auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& q) {
           const double pj = p[q.j];
-          double both = pi + pj;
+          double pair = own * pi + pj;
           if (stressed) {
             const double f = q.w * inverse_w, f2 = f * f;
             const double pull = std::min(pi, 0.0) + std::min(pj, 0.0);
-            both += f2 * f2 * (pull < 0 ? -kUnderTension * pull : kUnderPressure * both);
+            pair += f2 * f2 * (pull < 0 ? -kUnderTension * pull : under_pressure * (pi + pj));
           }
-          const double g = volume[q.j] * q.f * both;
+          const double g = volume[q.j] * q.f * pair;
           std::array<double, D> out;
           for (int c = 0; c < D; ++c) out[c] = g * q.x[c];
           return out;
@@ -44,11 +46,14 @@ void PressureForce::add_acceleration(const Stage& s, const MutField& acceleratio
   });
 }
 
-void add_surface_force(const Stage& s, const MutField& acceleration) {
+void PressureForce::add_surface_force(const Stage& s, const MutField& acceleration) const {
   const double scale = 2 / s.constants->lattice.second_moment;
   parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
-    const double factor = scale * s.surface_pressure[i] * s.volume[i] / s.patch->mass[i];
+    const double jump = form == GradientForm::sum
+                            ? s.surface_pressure[i]
+                            : s.surface[i] * (s.surface_pressure[i] - s.patch->pressure[i]);
+    const double factor = scale * jump * s.volume[i] / s.patch->mass[i];
     for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] += factor * s.grad_c[c][i];
   });
 }

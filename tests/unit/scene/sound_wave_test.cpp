@@ -87,8 +87,8 @@ TEST_CASE("a standing sound wave swings at c / lambda at every explicit order") 
     before = now;
     t = s.time();
   }
-  // First zero after a quarter of the period of 0.1 s. The kernel of h = 1.3 dx smooths a wave of 40 spacings by
-  // (k h)^2 / 10 = 0.4 % in gradient and divergence each, and so its frequency.
+  // First zero after a quarter of the period of 0.1 s. The kernel of h = 1.3 dx smooths a wave of 40 spacings
+  // by (k h)^2 / 10 = 0.4 % in gradient and divergence each, and so its frequency.
   CHECK(crossing == Approx(0.025).epsilon(0.006));
 }
 

@@ -43,7 +43,8 @@ TEST_CASE("artificial viscosity of a pair, Monaghan 1992: on approach only, alon
   const double f = sph::WendlandC2<3>::f(r, 1 / h);
   // v_ij.x_ij of the first particle is (0 - sign 2)(0 - r).
   const double along = std::min(sign * 2 * r, 0.0);
-  const double expected = b.cell_mass() * kAlpha * kSound * h * along / (7000 * (r * r + 0.01 * h * h)) * f * -r;
+  const double expected =
+      b.cell_mass() * kAlpha * kSound * h * along / (7000 * (r * r + 0.01 * h * h)) * f * -r;
   const Index first = b.patch.x[0][0] < 0.05 ? 0 : 1;
   CHECK(a[0][first] == Approx(expected).margin(1e-12));
   CHECK(a[0][1 - first] == Approx(-expected).margin(1e-12));

@@ -55,16 +55,24 @@ struct DensityDiffusion {
   mutable Components gradient_;
 };
 
-/// Pressure gradient, paper Eq. (3) first term: a_i = -sum_j m_j (p_i + p_j) / (rho_i rho_j) grad W_ij, with
-/// the repulsion R_ij f^4 of Monaghan 2000 where tension is handled by artificial stress. Pairs exchange what
-/// one loses and the other gains.
-struct PressureForce {
-  Tension tension = Tension::full;
-  void add_acceleration(const Stage& stage, const MutField& acceleration) const;
-};
+/// The pressure gradient of Eq. (3), first term, and how the surface pressure q (recoil and surface tension)
+/// meets it as a continuum surface force:
+///   sum: a_i = -sum_j m_j (p_i + p_j) / (rho_i rho_j) grad W_ij + 2 q_i grad c_i / rho_i, as published.
+///   Pairs
+///        exchange what one loses and the other gains. Under a uniform pressure disorder is felt as a force.
+///   difference: a_i = -sum_j m_j (p_j - p_i) / (rho_i rho_j) grad W_ij - 2 s_i (p_i - q_i) grad c_i / rho_i,
+///        s the surface weight: the same on the surface, but no force from disorder inside.
+/// A body of uniform pressure q is exactly at rest under both.
+enum class GradientForm { sum, difference };
 
-/// Continuum surface force against that gradient: a_i = 2 q_i grad c_i / rho_i, q the surface pressure
-/// (recoil and surface tension). A body of uniform pressure q is exactly at rest under both.
-void add_surface_force(const Stage& stage, const MutField& acceleration);
+struct PressureForce {
+  GradientForm form = GradientForm::difference;
+  Tension tension = Tension::full;
+  /// The sum over pairs, with the repulsion R_ij f^4 of Monaghan 2000 where tension is handled by artificial
+  /// stress (the difference form needs its part for negative pressures only).
+  void add_acceleration(const Stage& stage, const MutField& acceleration) const;
+  /// What stands with grad c above.
+  void add_surface_force(const Stage& stage, const MutField& acceleration) const;
+};
 
 }  // namespace meltray::terms
