@@ -11,8 +11,8 @@ namespace meltray::scene {
 
 namespace {
 
-/// Shifting coefficient of the incompressible row; it replaces the corrections of the weakly compressible
-/// ones.
+/// Shifting coefficient of the rows without artificial viscosity: nothing else keeps their particles in
+/// order.
 constexpr double kShifting = 4;
 
 struct Choice {
@@ -48,7 +48,8 @@ const std::vector<Preset>& presets() {
       {.model = "wcsph_reduced_interface",
        .solver = FlowSolver::wcsph,
        .interface_viscosity = true,
-       .buoyancy = true},
+       .buoyancy = true,
+       .shifting = kShifting},
       {.model = "isph", .interface_viscosity = true, .buoyancy = true, .shifting = kShifting}};
   return rows;
 }

@@ -91,9 +91,10 @@ Rows recoil_flat_plate(const Setting& setting) {
     double pressure_tolerance, speed_share, speed_goal, speed;
   };
   // Weakly compressible with its own numerical viscosity, and with that of the other two.
-  const scene::Overrides weak = {"flow.solver=wcsph", "flow.sound_speed_m_s=50", "flow.shifting=0"};
+  const scene::Overrides weak = {"flow.solver=wcsph", "flow.sound_speed_m_s=50"};
   scene::Overrides artificial = weak;
-  artificial.insert(artificial.end(), {"terms.artificial_viscosity=true", "terms.interface_viscosity=false"});
+  artificial.insert(artificial.end(), {"terms.artificial_viscosity=true", "terms.interface_viscosity=false",
+                                       "flow.shifting=0"});
   const std::vector<Entry> entries = {{"csf", {"surface.entry=csf"}, 0.03, 0.04, 0.01, 0.1},
                                       {"pressure", {"surface.entry=pressure"}, 0.01, 0.005, 0.005, 0.05},
                                       {"wcsph", artificial, 0.02, 0.04, 0.01, 0.1},

@@ -35,6 +35,7 @@ TEST_CASE("model picks a row of Table 1") {
   CHECK(row_of_table(reduced) == "wcsph_reduced");
 
   const Scene interface = weld({"model=wcsph_reduced_interface"});
+  CHECK(interface.flow.shifting == 4);
   CHECK((interface.terms.interface_viscosity && !interface.terms.artificial_viscosity));
   CHECK(interface.flow.reference_speed == isph.flow.reference_speed);
   CHECK(row_of_table(interface) == "wcsph_reduced_interface");
