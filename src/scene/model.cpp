@@ -81,6 +81,12 @@ bool Model::has_implicit() const {
          ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
 }
 
+bool Model::implicit_is_linear() const {
+  // Viscosity alone: its coefficients rest on positions and temperatures that no implicit term changes.
+  return !(scene_.terms.conduction && partitions.conduction) &&
+         !((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
+}
+
 std::size_t Model::enthalpy_begin() const {
   const std::size_t fields = 2 * constants_.dim + (weakly_compressible() ? 1 : 0);
   return flows() ? fields * stage.moving.size() : 0;

@@ -63,6 +63,7 @@ class Model : public OdeProblem {
   void choose_partitions(double dt);
 
   bool has_implicit() const override;
+  bool implicit_is_linear() const override;
   void explicit_rate(double t, const double* y, double* rate) override;
   void implicit_rate(double t, const double* y, double* rate) override;
   bool solve_implicit(double t, const double* y, double gamma, double* b) override;

@@ -128,6 +128,9 @@ std::vector<StepLimit> Model::step_limits() {
   const Time& time = scene_.time;
   const double h = constants_.smoothing, rho = constants_.density;
   const auto moving = static_cast<std::ptrdiff_t>(stage.moving.size());
+  // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
+  if (flows() && scene_.flow.projection == Projection::stage)
+    limits.push_back({divergence_time, "divergence"});
   if (flows() && moving > 0) {
     const double speed = parallel_max(moving, 0.0, [&](std::ptrdiff_t k) {
       const Index i = stage.moving[k];

@@ -11,7 +11,7 @@ namespace meltray::scene {
 namespace {
 
 /// Bulk conduction looks for newly warm particles every so many exchanges.
-constexpr int kExchangesPerBuild = 5;
+constexpr int kExchangesPerBuild = 10;
 /// Faster than this a particle is a numerical failure [m/s].
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].

@@ -1,63 +1,40 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/solve/conjugate_gradient.hpp"
 
-#include <cmath>
-
-#include "meltray/core/parallel.hpp"
-
 namespace meltray::solve {
 
-void multiply(const SymmetricMatrix& a, const std::vector<double>& x, std::vector<double>& y) {
-  const double* const in = x.data();
-  const double* const off = a.off.data();
+namespace {
+
+double row_times(const SymmetricMatrix& a, Index i, const double* x) {
+  double sum = 0;
+  const float* const off = a.off.data();
   const Index* const column = a.column.data();
-  parallel_for(a.rows(), [&](Index i) {
-    double sum = 0;
-    const Index last = a.start[i + 1];
+  const Index last = a.start[i + 1];
 #pragma omp simd reduction(+ : sum)
-    for (Index k = a.start[i]; k < last; ++k) sum += off[k] * in[column[k]];
-    y[i] = a.diagonal[i] * in[i] - sum;
-  });
+  for (Index k = a.start[i]; k < last; ++k) sum += static_cast<double>(off[k]) * x[column[k]];
+  return a.diagonal[i] * x[i] - sum;
+}
+
+}  // namespace
+
+void multiply(const SymmetricMatrix& a, const std::vector<double>& x, std::vector<double>& y) {
+  parallel_for(a.rows(), [&](Index i) { y[i] = row_times(a, i, x.data()); });
 }
 
 SolveReport ConjugateGradient::solve(const SymmetricMatrix& a, const std::vector<double>& b,
                                      std::vector<double>& x, double tolerance, int max_iterations) {
   const Index n = a.rows();
-  for (auto* v : {&r_, &p_, &ap_, &inverse_}) v->resize(n);
-  parallel_for(n, [&](Index i) { inverse_[i] = a.diagonal[i] > 0 ? 1 / a.diagonal[i] : 0.0; });
-  const double* const inverse = inverse_.data();
-  const double scale = parallel_sum(n, [&](std::ptrdiff_t i) { return b[i] * b[i] * inverse[i]; });
-  SolveReport report;
-  if (scale == 0) {
-    parallel_for(n, [&](Index i) { x[i] = 0; });
-    report.converged = true;
-    return report;
-  }
-  multiply(a, x, ap_);
+  vectors_.resize(n);
   parallel_for(n, [&](Index i) {
-    r_[i] = b[i] - ap_[i];
-    p_[i] = inverse[i] * r_[i];
+    vectors_.inverse_diagonal[i] = a.diagonal[i] > 0 ? 1 / a.diagonal[i] : 0.0;
+    vectors_.r[0][i] = b[i];
   });
-  double rz = parallel_sum(n, [&](std::ptrdiff_t i) { return r_[i] * r_[i] * inverse[i]; });
-  const double target = tolerance * tolerance * scale;
-  while (rz > target && report.iterations < max_iterations) {
-    multiply(a, p_, ap_);
-    const double curvature = parallel_sum(n, [&](std::ptrdiff_t i) { return p_[i] * ap_[i]; });
-    if (!(curvature > 0)) break;
-    const double alpha = rz / curvature;
-    parallel_for(n, [&](Index i) {
-      x[i] += alpha * p_[i];
-      r_[i] -= alpha * ap_[i];
-    });
-    const double next = parallel_sum(n, [&](std::ptrdiff_t i) { return r_[i] * r_[i] * inverse[i]; });
-    const double beta = next / rz;
-    rz = next;
-    parallel_for(n, [&](Index i) { p_[i] = inverse[i] * r_[i] + beta * p_[i]; });
-    ++report.iterations;
-  }
-  report.residual = std::sqrt(rz / scale);
-  report.converged = rz <= target;
-  return report;
+  return conjugate_gradient<1>(
+      n, [](std::ptrdiff_t k) { return static_cast<Index>(k); },
+      [&](Index i, const std::array<const double*, 1>& in) {
+        return std::array<double, 1>{row_times(a, i, in[0])};
+      },
+      vectors_, {x.data()}, tolerance, max_iterations);
 }
 
 int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace meltray::sph {
 
@@ -9,6 +11,8 @@ namespace {
 
 /// Consecutive cells handled by one task; fixed, so that the list does not depend on the number of threads.
 constexpr Index kCellsPerBlock = 128;
+/// Widens the reach of the search by more than single precision loses over a cell and its neighbours.
+constexpr float kRounding = 1.00001f;
 
 }  // namespace
 
@@ -16,65 +20,93 @@ void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
                       const std::vector<std::uint8_t>& wanted) {
   const Index cells = grid.cells(), blocks = (cells + kCellsPerBlock - 1) / kCellsPerBlock;
   blocks_.resize(blocks);
-  const int dim = dim_;
-  std::array<double, 3> inverse_period{};
-  for (int c = 0; c < dim; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
-
+  with_dim(dim_, [&](auto d) {
 #pragma omp parallel for schedule(dynamic, 1)
-  for (Index b = 0; b < blocks; ++b) {
-    Block& block = blocks_[b];
-    const Index last_cell = std::min(cells, (b + 1) * kCellsPerBlock);
-    for (Index cell = b * kCellsPerBlock; cell < last_cell; ++cell) {
-      const Index first = patch.cell_start[cell], last = patch.cell_start[cell + 1];
-      bool any = false;
-      for (Index i = first; i < last; ++i) any = any || wanted[i];
-      if (!any) continue;
-
-      // Candidates of the whole cell, copied side by side so that the distance test runs over plain arrays.
-      block.candidate.clear();
-      grid.for_block(cell, 1, [&](Index near) {
-        for (Index j = patch.cell_start[near]; j < patch.cell_start[near + 1]; ++j)
-          block.candidate.push_back(j);
-      });
-      const Index n = static_cast<Index>(block.candidate.size());
-      for (int c = 0; c < dim; ++c) {
-        block.candidate_x[c].resize(n);
-        for (Index k = 0; k < n; ++k) block.candidate_x[c][k] = patch.x[c][block.candidate[k]];
-      }
-      block.candidate_h.resize(n);
-      block.r2.resize(n);
-      for (Index k = 0; k < n; ++k) block.candidate_h[k] = patch.smoothing[block.candidate[k]];
-
-      for (Index i = first; i < last; ++i) {
-        if (!wanted[i]) continue;
-        double* const r2 = block.r2.data();
-        for (Index k = 0; k < n; ++k) r2[k] = 0;
-        for (int c = 0; c < dim; ++c) {
-          const double xi = patch.x[c][i], length = period_[c], inverse = inverse_period[c];
-          const double* const xj = block.candidate_x[c].data();
-#pragma omp simd
-          for (Index k = 0; k < n; ++k) {
-            double d = xi - xj[k];
-            d -= length * std::rint(d * inverse);
-            r2[k] += d * d;
-          }
-        }
-        const double hi = patch.smoothing[i];
-        const std::size_t before = block.entries.size();
-        block.entries.resize(before + n);
-        Index* out = block.entries.data() + before;
-        Index found = 0;
-        for (Index k = 0; k < n; ++k) {
-          const double reach = hi + block.candidate_h[k] + skin;
-          out[found] = block.candidate[k];
-          found += (r2[k] < reach * reach) & (block.candidate[k] != i);
-        }
-        block.entries.resize(before + found);
-        block.row.push_back(i);
-        block.count.push_back(found);
+    for (Index b = 0; b < blocks; ++b) {
+      const Index last_cell = std::min(cells, (b + 1) * kCellsPerBlock);
+      for (Index cell = b * kCellsPerBlock; cell < last_cell; ++cell) {
+        const Index first = patch.cell_start[cell], last = patch.cell_start[cell + 1];
+        if (std::none_of(wanted.begin() + first, wanted.begin() + last, [](auto w) { return w != 0; }))
+          continue;
+        gather_candidates<d>(patch, grid, cell, blocks_[b]);
+        for (Index i = first; i < last; ++i)
+          if (wanted[i]) search_row<d>(patch, i, first, skin, blocks_[b]);
       }
     }
+  });
+}
+
+/// Particles of a cell and those around it, side by side, relative to the first particle of the cell.
+template <int D>
+void PairList::gather_candidates(const Patch& patch, const CellGrid& grid, Index cell, Block& block) const {
+  block.candidate.clear();
+  grid.for_block(cell, 1, [&](Index near) {
+    for (Index j = patch.cell_start[near]; j < patch.cell_start[near + 1]; ++j) block.candidate.push_back(j);
+  });
+  const Index n = static_cast<Index>(block.candidate.size()), origin = patch.cell_start[cell];
+  for (int c = 0; c < D; ++c) {
+    block.candidate_x[c].resize(n);
+    for (Index k = 0; k < n; ++k)
+      block.candidate_x[c][k] =
+          static_cast<float>(nearest(c, patch.x[c][block.candidate[k]] - patch.x[c][origin]));
   }
+  block.candidate_h.resize(n);
+  for (Index k = 0; k < n; ++k)
+    block.candidate_h[k] = static_cast<float>(patch.smoothing[block.candidate[k]]);
+  block.near.assign((n + 7) / 8 * 8, 0);  // whole words
+}
+
+/// Appends the candidates within reach of particle i of the cell that starts with particle `origin`.
+template <int D>
+void PairList::search_row(const Patch& patch, Index i, Index origin, double skin, Block& block) const {
+  const Index n = static_cast<Index>(block.candidate.size());
+  float xi[D], length[D], inverse[D];
+  bool periodic = false;
+  for (int c = 0; c < D; ++c) {
+    xi[c] = static_cast<float>(nearest(c, patch.x[c][i] - patch.x[c][origin]));
+    length[c] = static_cast<float>(period_[c]);
+    inverse[c] = period_[c] > 0 ? static_cast<float>(1 / period_[c]) : 0.0f;
+    periodic = periodic || period_[c] > 0;
+  }
+  const auto reach_of_i = static_cast<float>(kRounding * (patch.smoothing[i] + skin));
+  const float* const hj = block.candidate_h.data();
+  const float* const xj[3] = {block.candidate_x[0].data(), block.candidate_x[1].data(),
+                              block.candidate_x[2].data()};
+  std::uint8_t* const near = block.near.data();
+  const auto test = [&](auto wraps) {
+#pragma omp simd
+    for (Index k = 0; k < n; ++k) {
+      float r2 = 0;
+      for (int c = 0; c < D; ++c) {
+        float x = xi[c] - xj[c][k];
+        if constexpr (wraps) x -= length[c] * std::rint(x * inverse[c]);
+        r2 += x * x;
+      }
+      const float reach = reach_of_i + kRounding * hj[k];
+      near[k] = r2 < reach * reach;
+    }
+  };
+  if (periodic)
+    test(std::true_type{});
+  else
+    test(std::false_type{});
+
+  if (block.entries.size() < block.used + n) block.entries.resize(2 * block.used + n);
+  Index* const out = block.entries.data() + block.used;
+  Index found = 0;
+  // Eight bytes looked at together: nine candidates of ten are too far away.
+  for (Index first_of_eight = 0; first_of_eight < n; first_of_eight += 8) {
+    std::uint64_t eight;
+    std::memcpy(&eight, near + first_of_eight, 8);
+    for (; eight != 0; eight &= eight - 1) {
+      const Index j = block.candidate[first_of_eight + std::countr_zero(eight) / 8];
+      out[found] = j;
+      found += j != i;
+    }
+  }
+  block.used += found;
+  block.row.push_back(i);
+  block.count.push_back(found);
 }
 
 void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
@@ -85,7 +117,7 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   for (Block& b : blocks_) {
     b.row.clear();
     b.count.clear();
-    b.entries.clear();
+    b.used = 0;
   }
 
   wanted_.assign(n, 0);
@@ -117,9 +149,6 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   for (Index i = 0; i < n; ++i) start_[i + 1] += start_[i];
   const std::size_t pairs = start_[n];
   j_.resize(pairs);
-  for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs);
-  w_.resize(pairs);
-  f_.resize(pairs);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
@@ -136,50 +165,63 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
 }
 
 void PairList::refresh(const Patch& patch, KernelType kernel) {
-  refresh_rows(patch, kernel, rows(), [](std::ptrdiff_t i) { return static_cast<Index>(i); });
+  refresh_with(patch, kernel, nullptr);
 }
 
 void PairList::refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows) {
-  refresh_rows(patch, kernel, static_cast<Index>(rows.size()),
-               [&](std::ptrdiff_t k) { return rows[static_cast<std::size_t>(k)]; });
+  refresh_with(patch, kernel, &rows);
 }
 
-template <class RowAt>
-void PairList::refresh_rows(const Patch& patch, KernelType kernel, Index count, RowAt&& row_at) {
-  std::array<double, 3> inverse_period{};
-  for (int c = 0; c < dim_; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
+void PairList::refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some) {
+  for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs());
+  w_.resize(pairs());
+  f_.resize(pairs());
+  const bool periodic = std::any_of(period_.begin(), period_.begin() + dim_, [](double p) { return p > 0; });
   with_dim(dim_, [&](auto d) {
-    constexpr int D = d;
-    with_kernel<D>(kernel, [&](auto k) {
-      using Kernel = decltype(k);
-      const auto x = view(patch.x);
-      const double* const h = patch.smoothing.data();
-      const Index* const j = j_.data();
-      double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
-      double *const w = w_.data(), *const f = f_.data();
-      const auto period = period_;
-      parallel_for(count, [&](std::ptrdiff_t n) {
-        const Index i = row_at(n);
-        const double hi = h[i];
-        double xi[D];
-        for (int c = 0; c < D; ++c) xi[c] = x[c][i];
-        const Index first = start_[i], last = start_[i + 1];
-#pragma omp simd
-        for (Index k = first; k < last; ++k) {
-          double r2 = 0;
-          for (int c = 0; c < D; ++c) {
-            double s = xi[c] - x[c][j[k]];
-            s -= period[c] * std::rint(s * inverse_period[c]);
-            dx[c][k] = s;
-            r2 += s * s;
-          }
-          const double r = std::sqrt(r2), inv_h = 2 / (hi + h[j[k]]);
-          w[k] = Kernel::w(r, inv_h);
-          f[k] = Kernel::f(r, inv_h);
-        }
-      });
+    with_kernel<d>(kernel, [&](auto k) {
+      if (periodic)
+        refresh_rows<d, decltype(k), true>(patch, some);
+      else
+        refresh_rows<d, decltype(k), false>(patch, some);
     });
   });
+}
+
+template <int D, class Kernel, bool Periodic>
+void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) {
+  std::array<double, 3> inverse_period{};
+  for (int c = 0; c < D; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
+
+  const auto x = view(patch.x);
+  const double* const h = patch.smoothing.data();
+  const Index* const j = j_.data();
+  double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
+  double *const w = w_.data(), *const f = f_.data();
+  const auto period = period_;
+  const auto refresh_row = [&](Index i) {
+    const double hi = h[i];
+    double xi[D];
+    for (int c = 0; c < D; ++c) xi[c] = x[c][i];
+    const Index first = start_[i], last = start_[i + 1];
+#pragma omp simd
+    for (Index k = first; k < last; ++k) {
+      double r2 = 0;
+      for (int c = 0; c < D; ++c) {
+        double s = xi[c] - x[c][j[k]];
+        if constexpr (Periodic) s -= period[c] * std::rint(s * inverse_period[c]);
+        dx[c][k] = s;
+        r2 += s * s;
+      }
+      const double r = std::sqrt(r2), inv_h = 2 / (hi + h[j[k]]);
+      w[k] = Kernel::w(r, inv_h);
+      f[k] = Kernel::f(r, inv_h);
+    }
+  };
+  if (some)
+    parallel_for(static_cast<std::ptrdiff_t>(some->size()),
+                 [&](std::ptrdiff_t n) { refresh_row((*some)[n]); });
+  else
+    parallel_for(rows(), refresh_row);
 }
 
 std::size_t PairList::bytes() const {

@@ -9,44 +9,70 @@ namespace meltray::terms {
 
 namespace {
 
-constexpr double kAwake = 1e-3;         ///< [K] away from rest
+constexpr double kAwake = 0.05;         ///< [K] away from rest
 constexpr double kExplicitShare = 0.5;  ///< of the Gershgorin limit per explicit sub-step
 
 }  // namespace
 
 void BulkConduction::build(const SceneConstants& constants, PatchSelector& selector,
                            const Particles& particles, double rest_temperature) {
-  std::vector<Index> awake;
+  const auto rests = [&](Index g) { return std::abs(particles.temperature[g] - rest_temperature) <= kAwake; };
+  awake_.clear();
   for (Index i = 0; i < static_cast<Index>(particles.size()); ++i)
-    if (!particles.is_liquid(i) && !particles.is_wall(i) && !particles.has(i, kRemoved) &&
-        std::abs(particles.temperature[i] - rest_temperature) > kAwake)
-      awake.push_back(i);
-  selector.select_resting_near(particles, awake, patch_);
+    if (!rests(i) && !particles.is_liquid(i) && !particles.is_wall(i) && !particles.has(i, kRemoved))
+      awake_.push_back(i);
+  selector.select_resting_near(particles, awake_, patch_);
   const Index n = patch_.size();
-  all_.assign(n, 1);
-  for (Index i = 0; i < n; ++i) all_[i] = !patch_.wall[i];
-  pairs_.build(patch_, selector.grid(), 0.0, all_);
-  pairs_.refresh(patch_, constants.kernel);
-  awake_.resize(n);
-  for (Index i = 0; i < n; ++i)
-    awake_[i] = std::abs(particles.temperature[patch_.global[i]] - rest_temperature) > kAwake;
-  k_.assign(pairs_.pairs(), 0.0);
-  const double scale = 1 / constants.lattice.second_moment;
+  row_wanted_.resize(n);
+  for (Index i = 0; i < n; ++i) row_wanted_[i] = !patch_.wall[i];
+  pairs_.build(patch_, selector.grid(), 0.0, row_wanted_);
+  assemble(constants, rests);
+}
+
+/// Conductances of the pairs of which one at least is awake; the others are left out of the rows.
+template <class Rests>
+void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
+  const Index n = patch_.size();
   const auto& material = constants.material;
+  neighbour_.resize(pairs_.pairs());
+  k_.resize(pairs_.pairs());
+  row_end_.resize(n);
+  lambda_.resize(n);
+  at_rest_.resize(n);
+  parallel_for(n, [&](Index i) {
+    lambda_[i] = patch_.wall[i] ? 0.0 : material.conductivity(patch_.h[i]);
+    at_rest_[i] = rests(patch_.global[i]);
+  });
+  const double scale = 1 / constants.lattice.second_moment;
   sph::with_dim(constants.dim, [&](auto d) {
     constexpr int D = d;
-    parallel_for(n, [&](Index i) {
-      const double vi = patch_.mass[i] / constants.density, li = material.conductivity(patch_.h[i]);
-      pairs_.for_row<D>(i, [&](const sph::Pair<D>& p) {
-        if (patch_.wall[p.j] || !(awake_[i] || awake_[p.j])) return;
-        k_[p.k] = conduction_coefficient(vi, patch_.mass[p.j] / constants.density, li,
-                                         material.conductivity(patch_.h[p.j]), scale * p.f);
+    with_kernel<D>(constants.kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      parallel_for(n, [&](Index i) {
+        const double vi = patch_.mass[i] / constants.density, li = lambda_[i], hi = patch_.smoothing[i];
+        Index out = pairs_.begin(i);
+        for (Index q = pairs_.begin(i); q < pairs_.end(i); ++q) {
+          const Index j = pairs_.neighbour(q);
+          if (patch_.wall[j] || (at_rest_[i] && at_rest_[j])) continue;
+          double r2 = 0;
+          for (int c = 0; c < D; ++c) {
+            const double x = pairs_.nearest(c, patch_.x[c][i] - patch_.x[c][j]);
+            r2 += x * x;
+          }
+          const double f = Kernel::f(std::sqrt(r2), 2 / (hi + patch_.smoothing[j]));
+          if (f == 0) continue;
+          neighbour_[out] = j;
+          // Rounded alike for (i, j) and (j, i), so that heat stays exact.
+          k_[out++] = static_cast<float>(
+              conduction_coefficient(vi, patch_.mass[j] / constants.density, li, lambda_[j], scale * f));
+        }
+        row_end_[i] = out;
       });
     });
   });
   rate_ = parallel_max(n, 0.0, [&](std::ptrdiff_t i) {
     double sum = 0;
-    for (Index q = pairs_.begin(i); q < pairs_.end(i); ++q) sum -= k_[q];
+    for (Index q = pairs_.begin(i); q < row_end_[i]; ++q) sum -= k_[q];
     return sum / patch_.mass[i] * material.temperature_slope(patch_.h[i]);
   });
 }
@@ -71,12 +97,12 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
       double sum = 0;
       const double ti = temperature_[i];
       const int si = skip_[i];
-      const Index last = pairs_.end(i);
+      const Index last = row_end_[i];
 #pragma omp simd reduction(+ : sum)
       for (Index q = pairs_.begin(i); q < last; ++q) {
-        const Index j = pairs_.neighbour(q);
+        const Index j = neighbour_[q];
         const int both = si + skip_[j];
-        sum += both < 2 ? k_[q] * (ti - temperature_[j]) : 0.0;
+        sum += both < 2 ? static_cast<double>(k_[q]) * (ti - temperature_[j]) : 0.0;
       }
       gain_[i] = si < 2 ? step * sum / patch_.mass[i] : 0.0;
     });
@@ -90,7 +116,8 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
 }
 
 std::size_t BulkConduction::bytes() const {
-  return pairs_.bytes() + k_.capacity() * sizeof(double) + patch_.global.capacity() * 120;
+  return pairs_.bytes() + k_.capacity() * sizeof(float) + neighbour_.capacity() * sizeof(Index) +
+         patch_.global.capacity() * 140;
 }
 
 }  // namespace meltray::terms

@@ -6,7 +6,6 @@
 namespace meltray::terms {
 
 void ConductionOperator::assemble(const Stage& s) {
-  assembled_ = true;
   const Index n = s.size();
   const auto& pairs = *s.pairs;
   conductivity_.resize(n);
@@ -76,9 +75,8 @@ double ConductionOperator::rate(const Stage& s) const {
   const auto& material = s.constants->material;
   return parallel_max(static_cast<std::ptrdiff_t>(s.heated.size()), 0.0, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
-    double sum = -wall_slope_[i];
-    for (Index q = s.pairs->begin(i); q < s.pairs->end(i); ++q) sum -= k_[q];
-    return sum / s.patch->mass[i] * material.temperature_slope(s.patch->h[i]);
+    return -(wall_slope_[i] + row_sum(*s.pairs, i)) / s.patch->mass[i] *
+           material.temperature_slope(s.patch->h[i]);
   });
 }
 
@@ -87,70 +85,44 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
   // In dT = (dT/dh) dh the matrix C - gamma K is symmetric positive definite (C = m dh/dT).
   const Index n = s.size();
   const auto count = static_cast<std::ptrdiff_t>(s.heated.size());
-  for (auto* a : {&r_, &ap_, &inverse_diagonal_, &capacity_}) a->resize(n);
-  p_.assign(n, 0.0);
+  capacity_.resize(n);
   dt_.assign(n, 0.0);
+  vectors_.resize(n);
   const auto& pairs = *s.pairs;
   const auto& material = s.constants->material;
   const double* const mass = s.patch->mass.data();
-  parallel_for(count, [&](std::ptrdiff_t row) {
-    const Index i = s.heated[row];
-    double off = 0;
-    for (Index q = pairs.begin(i); q < pairs.end(i); ++q) off += k_[q];
-    capacity_[i] = mass[i] / material.temperature_slope(s.patch->h[i]) -
-                   gamma * (wall_slope_[i] + (local ? local[i] : 0.0));
-    inverse_diagonal_[i] = 1 / (capacity_[i] - gamma * off);
-    r_[i] = mass[i] * b[i];
-    p_[i] = inverse_diagonal_[i] * r_[i];
-  });
   const double* const k = k_.data();
   const Index* const neighbour = pairs.neighbours();
-  const auto apply = [&](const std::vector<double>& values, std::vector<double>& out) {
-    const double* const in = values.data();
-    parallel_for(count, [&](std::ptrdiff_t row) {
-      const Index i = s.heated[row];
-      const double ti = in[i];
-      double sum = 0;
-      const Index last = pairs.end(i);
+  parallel_for(count, [&](std::ptrdiff_t row) {
+    const Index i = s.heated[row];
+    capacity_[i] = mass[i] / material.temperature_slope(s.patch->h[i]) -
+                   gamma * (wall_slope_[i] + (local ? local[i] : 0.0));
+    vectors_.inverse_diagonal[i] = 1 / (capacity_[i] - gamma * row_sum(pairs, i));
+    vectors_.r[0][i] = mass[i] * b[i];
+  });
+  const auto report = solve::conjugate_gradient<1>(
+      count, [&](std::ptrdiff_t row) { return s.heated[row]; },
+      [&](Index i, const std::array<const double*, 1>& in) {
+        const double ti = in[0][i];
+        double sum = 0;
+        const Index last = pairs.end(i);
 #pragma omp simd reduction(+ : sum)
-      for (Index q = pairs.begin(i); q < last; ++q) sum += k[q] * (ti - in[neighbour[q]]);
-      out[i] = capacity_[i] * ti - gamma * sum;
-    });
-  };
-  const auto dot = [&](const std::vector<double>& a, const std::vector<double>& c) {
-    return parallel_sum(count, [&](std::ptrdiff_t row) { return a[s.heated[row]] * c[s.heated[row]]; });
-  };
-  const auto preconditioned = [&] {
-    return parallel_sum(count, [&](std::ptrdiff_t row) {
-      const Index i = s.heated[row];
-      return r_[i] * r_[i] * inverse_diagonal_[i];
-    });
-  };
-  double rz = preconditioned();
-  const double target = tolerance * tolerance * rz;
-  int iteration = 0;
-  for (; rz > target && rz > 0; ++iteration) {
-    if (iteration == max_iterations) return -1;
-    apply(p_, ap_);
-    const double alpha = rz / dot(p_, ap_);
-    parallel_for(count, [&](std::ptrdiff_t row) {
-      const Index i = s.heated[row];
-      dt_[i] += alpha * p_[i];
-      r_[i] -= alpha * ap_[i];
-    });
-    const double next = preconditioned();
-    const double beta = next / rz;
-    rz = next;
-    parallel_for(count, [&](std::ptrdiff_t row) {
-      const Index i = s.heated[row];
-      p_[i] = inverse_diagonal_[i] * r_[i] + beta * p_[i];
-    });
-  }
+        for (Index q = pairs.begin(i); q < last; ++q) sum += k[q] * (ti - in[0][neighbour[q]]);
+        return std::array<double, 1>{capacity_[i] * ti - gamma * sum};
+      },
+      vectors_, {dt_.data()}, tolerance, max_iterations);
+  if (!report.converged) return -1;
   parallel_for(count, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
     x[i] = dt_[i] / material.temperature_slope(s.patch->h[i]);
   });
-  return iteration;
+  return report.iterations;
+}
+
+double ConductionOperator::row_sum(const sph::PairList& pairs, Index i) const {
+  double sum = 0;
+  for (Index q = pairs.begin(i); q < pairs.end(i); ++q) sum += k_[q];
+  return sum;
 }
 
 }  // namespace meltray::terms

@@ -31,6 +31,8 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
   const auto& pairs = *s.pairs;
   const Index n = s.size();
   const double rho = s.constants->density, h = s.constants->smoothing;
+  c_sum_.assign(n, 0.0);
+  e2_sum_.assign(n, 0.0);
   if (choice.physical) {
     mu_.resize(n);
     c_.resize(pairs.pairs());
@@ -38,7 +40,7 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
   }
   if (choice.interface) {
     alpha_.resize(n);
-    d_.resize(pairs.pairs());
+    for (int c = 0; c < s.constants->dim; ++c) e_[c].resize(pairs.pairs());
     parallel_for(n, [&](Index i) {
       double g = 0;
       for (int c = 0; c < s.constants->dim; ++c) g += s.grad_c[c][i] * s.grad_c[c][i];
@@ -52,7 +54,8 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
     const double* const volume = s.volume.data();
     const double *const mu = mu_.data(), *const alpha = alpha_.data();
     const std::uint8_t* const liquid = s.patch->liquid.data();
-    double *const c = c_.data(), *const dd = d_.data();
+    float* const c = c_.data();
+    float* const e[3] = {e_[0].data(), e_[1].data(), e_[2].data()};
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t row) {
       const Index i = s.moving[row];
       const double vi = volume[i];
@@ -61,165 +64,147 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
         // A solid or wall neighbour has the viscosity of the melt beside it.
         pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
           const double mu_j = liquid[p.j] ? mu[p.j] : mu_i;
-          c[p.k] = scale * vi * volume[p.j] * p.f * (2 * mu_i * mu_j / (mu_i + mu_j));
+          c[p.k] = static_cast<float>(scale * (vi * volume[p.j]) * p.f * (2 * mu_i * mu_j / (mu_i + mu_j)));
         });
         if (pairs.next_to_wall()[i])
           pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
             if (!s.patch->wall[p.j]) return;
             const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
-            c[p.k] *= face.no_slip ? no_slip_factor(s, i, p.j) : 0.0;
+            c[p.k] *= static_cast<float>(face.no_slip ? no_slip_factor(s, i, p.j) : 0.0);
           });
+        double sum = 0;
+        for (Index k = pairs.begin(i); k < pairs.end(i); ++k) sum -= c[k];
+        c_sum_[i] = sum;
       }
       if (choice_.interface) {
-        const double alpha_i = alpha[i], vs = vi * strength;
+        const double alpha_i = alpha[i];
         pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
-          dd[p.k] = (alpha_i + alpha[p.j]) * vs * volume[p.j] * p.f / (p.r2() + softening);
+          const double d_ij =
+              strength * (alpha_i + alpha[p.j]) * (vi * volume[p.j]) * p.f / (p.r2() + softening);
+          const double root = std::sqrt(-d_ij);
+          for (int k = 0; k < D; ++k) e[k][p.k] = static_cast<float>(root * p.x[k]);
         });
+        double sum = 0;
+        for (int axis = 0; axis < D; ++axis)
+          for (Index k = pairs.begin(i); k < pairs.end(i); ++k)
+            sum += static_cast<double>(e[axis][k]) * e[axis][k];
+        e2_sum_[i] = sum;
       }
     });
   });
 }
 
-/// sum_j c_ij u_ij + d_ij (u_ij.x_ij) x_ij of one row for a velocity-like field u.
+/// sum_j c_ij u_ij - (u_ij.e_ij) e_ij of one row for a velocity-like field u.
 template <int D, bool Physical, bool Interface>
-std::array<double, D> ViscousOperator::row(const Stage& s, Index i, const ConstField& u) const {
-  const double *const cc = c_.data(), *const dd = d_.data();
+std::array<double, D> ViscousOperator::row(const Stage& s, Index i,
+                                           const std::array<const double*, D>& u) const {
+  const float* const cc = c_.data();
+  const float* const e[3] = {e_[0].data(), e_[1].data(), e_[2].data()};
+  const Index* const neighbour = s.pairs->neighbours();
   double ui[D];
   for (int c = 0; c < D; ++c) ui[c] = u[c][i];
-  return s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-    double du[D], along = 0;
+  double s0 = 0, s1 = 0, s2 = 0;
+  const Index last = s.pairs->end(i);
+#pragma omp simd reduction(+ : s0, s1, s2)
+  for (Index k = s.pairs->begin(i); k < last; ++k) {
+    const Index j = neighbour[k];
+    double du[3], ek[3], along = 0;
     for (int c = 0; c < D; ++c) {
-      du[c] = ui[c] - u[c][p.j];
-      along += du[c] * p.x[c];
+      du[c] = ui[c] - u[c][j];
+      if constexpr (Interface) {
+        ek[c] = e[c][k];
+        along += du[c] * ek[c];
+      }
     }
-    const double iso = Physical ? cc[p.k] : 0.0, axial = Interface ? dd[p.k] * along : 0.0;
-    std::array<double, D> out;
-    for (int c = 0; c < D; ++c) out[c] = iso * du[c] + axial * p.x[c];
-    return out;
-  });
+    const auto part = [&](int c) {
+      double f = 0;
+      if constexpr (Physical) f += cc[k] * du[c];
+      if constexpr (Interface) f -= along * ek[c];
+      return f;
+    };
+    s0 += part(0);
+    s1 += part(1);
+    if constexpr (D == 3) s2 += part(2);
+  }
+  if constexpr (D == 3)
+    return {s0, s1, s2};
+  else
+    return {s0, s1};
 }
 
-/// Calls f(i, row sum) for every moving particle, with the loop compiled for the active parts.
+/// Calls f(row) with row(s, i, u) compiled for the active parts.
 template <int D, class F>
-void ViscousOperator::for_rows(const Stage& s, const ConstField& u, F&& f) const {
-  const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
-  const auto run = [&](auto physical, auto interface) {
-    parallel_for(count, [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      f(i, row<D, physical, interface>(s, i, u));
+void ViscousOperator::with_row(F&& f) const {
+  const auto compiled = [&](auto physical, auto interface) {
+    f([&](const Stage& s, Index i, const std::array<const double*, D>& u) {
+      return row<D, physical, interface>(s, i, u);
     });
   };
   if (choice_.physical && choice_.interface)
-    run(std::true_type{}, std::true_type{});
+    compiled(std::true_type{}, std::true_type{});
   else if (choice_.physical)
-    run(std::true_type{}, std::false_type{});
+    compiled(std::true_type{}, std::false_type{});
   else
-    run(std::false_type{}, std::true_type{});
+    compiled(std::false_type{}, std::true_type{});
 }
 
 void ViscousOperator::add_acceleration(const Stage& s, const ConstField& v,
                                        const MutField& acceleration) const {
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    for_rows<D>(s, v, [&](Index i, const std::array<double, D>& force) {
-      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / s.patch->mass[i];
+    std::array<const double*, D> in;
+    for (int c = 0; c < D; ++c) in[c] = v[c];
+    with_row<D>([&](auto&& row_of) {
+      parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+        const Index i = s.moving[k];
+        const std::array<double, D> force = row_of(s, i, in);
+        for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / s.patch->mass[i];
+      });
     });
   });
 }
 
 double ViscousOperator::rate(const Stage& s) const {
-  const auto& pairs = *s.pairs;
-  return sph::with_dim(s.constants->dim, [&](auto d) {
-    constexpr int D = d;
-    return parallel_max(static_cast<std::ptrdiff_t>(s.moving.size()), 0.0, [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      double sum = 0;
-      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
-        if (choice_.physical) sum -= c_[p.k];
-        // The projected part acts on one of D directions; its trace bounds the row.
-        if (choice_.interface) sum -= d_[p.k] * p.r2();
-      });
-      return sum / s.patch->mass[i];
-    });
+  // The interface part acts on one of D directions; its trace bounds the row.
+  return parallel_max(static_cast<std::ptrdiff_t>(s.moving.size()), 0.0, [&](std::ptrdiff_t k) {
+    const Index i = s.moving[k];
+    return (c_sum_[i] + e2_sum_[i]) / s.patch->mass[i];
   });
 }
 
 int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, const MutField& x,
                            double tolerance, int max_iterations) const {
-  // (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij + d_ij (x_ij.e) e with resting
-  // neighbours held at zero change; symmetric positive definite: conjugate gradients with a diagonal
-  // preconditioner.
-  const Index n = s.size();
-  const auto& pairs = *s.pairs;
+  return s.constants->dim == 2 ? solve_in<2>(s, gamma, b, x, tolerance, max_iterations, vectors_2d_)
+                               : solve_in<3>(s, gamma, b, x, tolerance, max_iterations, vectors_3d_);
+}
+
+/// (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij - (x_ij.e_ij) e_ij with resting
+/// neighbours held at zero change; symmetric positive definite.
+template <int D>
+int ViscousOperator::solve_in(const Stage& s, double gamma, const ConstField& b, const MutField& x,
+                              double tolerance, int max_iterations, solve::CgVectors<D>& vectors) const {
   const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
-  for (int c = 0; c < s.constants->dim; ++c) {
-    r_[c].resize(n);
-    ap_[c].resize(n);
-    p_[c].assign(n, 0.0);
-  }
-  inverse_diagonal_.resize(n);
-  return sph::with_dim(s.constants->dim, [&](auto d) {
-    constexpr int D = d;
-    const double* const mass = s.patch->mass.data();
-    const auto apply = [&](const Components& in, Components& out) {
-      for_rows<D>(s, view(in), [&](Index i, const std::array<double, D>& force) {
-        for (int c = 0; c < D; ++c) out[c][i] = mass[i] * in[c][i] - gamma * force[c];
-      });
-    };
-    const auto dot = [&](const Components& a, const Components& bb, const double* weight) {
-      return parallel_sum(count, [&](std::ptrdiff_t k) {
-        const Index i = s.moving[k];
-        double sum = 0;
-        for (int c = 0; c < D; ++c) sum += a[c][i] * bb[c][i];
-        return weight ? sum * weight[i] : sum;
-      });
-    };
-    parallel_for(count, [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      double diagonal = 0;
-      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
-        if (choice_.physical) diagonal -= c_[p.k];
-        if (choice_.interface) diagonal -= d_[p.k] * p.r2() / D;
-      });
-      inverse_diagonal_[i] = 1 / (mass[i] + gamma * diagonal);
-      for (int c = 0; c < D; ++c) p_[c][i] = x[c][i];
-    });
-    apply(p_, ap_);
-    const double target = tolerance * tolerance * parallel_sum(count, [&](std::ptrdiff_t k) {
-                            const Index i = s.moving[k];
-                            double sum = 0;
-                            for (int c = 0; c < D; ++c) sum += b[c][i] * b[c][i];
-                            return sum * mass[i] * mass[i] * inverse_diagonal_[i];
-                          });
-    parallel_for(count, [&](std::ptrdiff_t k) {
-      const Index i = s.moving[k];
-      for (int c = 0; c < D; ++c) {
-        r_[c][i] = mass[i] * b[c][i] - ap_[c][i];
-        p_[c][i] = inverse_diagonal_[i] * r_[c][i];
-      }
-    });
-    double rz = dot(r_, r_, inverse_diagonal_.data());
-    for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      if (rz <= target) return iteration;
-      apply(p_, ap_);
-      const double alpha = rz / dot(p_, ap_, nullptr);
-      parallel_for(count, [&](std::ptrdiff_t k) {
-        const Index i = s.moving[k];
-        for (int c = 0; c < D; ++c) {
-          x[c][i] += alpha * p_[c][i];
-          r_[c][i] -= alpha * ap_[c][i];
-        }
-      });
-      const double next = dot(r_, r_, inverse_diagonal_.data());
-      const double beta = next / rz;
-      rz = next;
-      parallel_for(count, [&](std::ptrdiff_t k) {
-        const Index i = s.moving[k];
-        for (int c = 0; c < D; ++c) p_[c][i] = inverse_diagonal_[i] * r_[c][i] + beta * p_[c][i];
-      });
-    }
-    return rz <= target ? max_iterations : -1;
+  const double* const mass = s.patch->mass.data();
+  vectors.resize(s.size());
+  std::array<double*, D> out;
+  for (int c = 0; c < D; ++c) out[c] = x[c];
+  parallel_for(count, [&](std::ptrdiff_t k) {
+    const Index i = s.moving[k];
+    vectors.inverse_diagonal[i] = 1 / (mass[i] + gamma * (c_sum_[i] + e2_sum_[i] / D));
+    for (int c = 0; c < D; ++c) vectors.r[c][i] = mass[i] * b[c][i];
   });
+  solve::SolveReport report;
+  with_row<D>([&](auto&& row_of) {
+    report = solve::conjugate_gradient<D>(
+        count, [&](std::ptrdiff_t k) { return s.moving[k]; },
+        [&](Index i, const std::array<const double*, D>& in) {
+          std::array<double, D> a = row_of(s, i, in);
+          for (int c = 0; c < D; ++c) a[c] = mass[i] * in[c][i] - gamma * a[c];
+          return a;
+        },
+        vectors, out, tolerance, max_iterations);
+  });
+  return report.converged ? report.iterations : -1;
 }
 
 }  // namespace meltray::terms

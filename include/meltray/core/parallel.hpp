@@ -68,6 +68,25 @@ double parallel_sum(std::ptrdiff_t n, F&& f) {
       [](double a, double b) { return a + b; });
 }
 
+/// Sum of f(i) over [0, n) for bodies as heavy as a row of a matrix: shared among threads from few items on.
+template <class F>
+double parallel_sum_rows(std::ptrdiff_t n, F&& f) {
+  constexpr std::ptrdiff_t kBlock = 64;
+  const std::ptrdiff_t blocks = (n + kBlock - 1) / kBlock;
+  thread_local std::vector<double> parts;
+  parts.resize(static_cast<std::size_t>(blocks));
+  double* const part = parts.data();
+#pragma omp parallel for schedule(static) if (n >= kSerialBelow)
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+    double sum = 0;
+    for (std::ptrdiff_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) sum += f(i);
+    part[b] = sum;
+  }
+  double total = 0;
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) total += part[b];
+  return total;
+}
+
 /// Largest f(i) over [0, n), or `floor` where that is larger.
 template <class F>
 double parallel_max(std::ptrdiff_t n, double floor, F&& f) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -41,7 +42,8 @@ class PairList {
   /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
   /// while particles move by less than half of it.
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
-  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions.
+  /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours
+  /// only.
   void refresh(const Patch& patch, KernelType kernel);
   /// The same for some rows only; the others keep the geometry that they have.
   void refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows);
@@ -55,6 +57,10 @@ class PairList {
   const std::vector<std::uint8_t>& next_to_melt() const { return next_to_melt_; }
   /// 1 for rows with a dummy of a box face among their neighbours.
   const std::vector<std::uint8_t>& next_to_wall() const { return next_to_wall_; }
+  /// Component c of a difference of two positions, to the nearest periodic image.
+  double nearest(int c, double difference) const {
+    return period_[c] > 0 ? difference - period_[c] * std::rint(difference / period_[c]) : difference;
+  }
   std::size_t bytes() const;
   std::size_t pairs() const { return j_.size(); }
 
@@ -117,16 +123,25 @@ class PairList {
   }
 
  private:
+  /// Rows of some consecutive cells and what their search needs. Distances are tested in single precision,
+  /// relative to the cell, with a margin: pairs beyond the support have weight 0 and do no harm.
   struct Block {
-    std::vector<Index> row, count, entries;
+    std::vector<Index> row, count;
+    std::vector<Index> entries;  ///< neighbours of the rows, one after the other; `used` of them
+    std::size_t used = 0;
     std::vector<Index> candidate;
-    Components candidate_x;
-    std::vector<double> candidate_h, r2;
+    std::array<std::vector<float>, 3> candidate_x;
+    std::vector<float> candidate_h;
+    std::vector<std::uint8_t> near;  ///< 1 = within reach, of one row at a time
   };
+  template <int D>
+  void gather_candidates(const Patch& patch, const CellGrid& grid, Index cell, Block& block) const;
+  template <int D>
+  void search_row(const Patch& patch, Index i, Index origin, double skin, Block& block) const;
+  void refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some);
+  template <int D, class Kernel, bool Periodic>
+  void refresh_rows(const Patch& patch, const std::vector<Index>* some);
   void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
-
-  template <class RowAt>
-  void refresh_rows(const Patch& patch, KernelType kernel, Index count, RowAt&& row_at);
 
   int dim_ = 3;
   std::array<double, 3> period_{};

@@ -11,7 +11,7 @@ namespace meltray::terms {
 /// heat is conserved exactly across the boundary between them. Particles at rest thermally are not looked at.
 class BulkConduction {
  public:
-  /// Finds the resting particles that differ from `rest_temperature` by more than a millikelvin, their
+  /// Finds the resting particles that differ from `rest_temperature` by more than 0.05 K, their
   /// neighbours and their pair coefficients. Call again before heat has travelled a support radius.
   void build(const SceneConstants& constants, PatchSelector& selector, const Particles& particles,
              double rest_temperature);
@@ -23,10 +23,16 @@ class BulkConduction {
   std::size_t bytes() const;
 
  private:
+  template <class Rests>
+  void assemble(const SceneConstants& constants, Rests&& rests);
+
   Patch patch_;
   sph::PairList pairs_;
-  std::vector<double> k_, temperature_, gain_;
-  std::vector<std::uint8_t> awake_, skip_, all_;
+  /// Row i holds the entries from pairs_.begin(i) to row_end_[i].
+  std::vector<Index> awake_, neighbour_, row_end_;
+  std::vector<float> k_;
+  std::vector<double> lambda_, temperature_, gain_;
+  std::vector<std::uint8_t> row_wanted_, at_rest_, skip_;
   double rate_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "meltray/solve/conjugate_gradient.hpp"
 #include "meltray/terms/term.hpp"
 
 namespace meltray::terms {
@@ -23,15 +24,14 @@ class ConductionOperator {
             double tolerance, int max_iterations) const;
   /// Largest row sum of -J [1/s].
   double rate(const Stage& stage) const;
-  /// Derivative of the wall power with respect to a particle's temperature [W/K], for the exact Newton row.
-  const std::vector<double>& wall_slope() const { return wall_slope_; }
-  bool assembled() const { return assembled_; }
 
  private:
-  bool assembled_ = false;
+  double row_sum(const sph::PairList& pairs, Index i) const;
+
   std::vector<double> k_;  ///< per pair; 0 where the pair does not exchange heat
   std::vector<double> conductivity_, wall_slope_, wall_power_;
-  mutable std::vector<double> r_, p_, ap_, inverse_diagonal_, capacity_, dt_;
+  mutable std::vector<double> capacity_, dt_;
+  mutable solve::CgVectors<1> vectors_;
 };
 
 /// Pair coefficient k_ij of the header comment [W/K].

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "meltray/solve/conjugate_gradient.hpp"
 #include "meltray/terms/term.hpp"
 
 namespace meltray::terms {
@@ -45,15 +46,21 @@ class ViscousOperator {
 
  private:
   template <int D, bool Physical, bool Interface>
-  std::array<double, D> row(const Stage& stage, Index i, const ConstField& u) const;
+  std::array<double, D> row(const Stage& stage, Index i, const std::array<const double*, D>& u) const;
   template <int D, class F>
-  void for_rows(const Stage& stage, const ConstField& u, F&& f) const;
+  void with_row(F&& f) const;
+  template <int D>
+  int solve_in(const Stage& stage, double gamma, const ConstField& b, const MutField& x, double tolerance,
+               int max_iterations, solve::CgVectors<D>& vectors) const;
 
   ViscousChoice choice_;
-  std::vector<double> c_, d_;  ///< per pair
+  /// Per pair, in single precision because the product is bound by memory: c_ij and e_ij = sqrt(-d_ij) x_ij,
+  /// so that d_ij (u.x_ij) x_ij = -(u.e_ij) e_ij. Rounded alike for (i, j) and (j, i).
+  std::vector<float> c_, e_[3];
+  std::vector<double> c_sum_, e2_sum_;  ///< sum_j -c_ij and sum_j e_ij^2 of each row
   std::vector<double> alpha_, mu_;
-  mutable Components r_, p_, ap_;
-  mutable std::vector<double> inverse_diagonal_;
+  mutable solve::CgVectors<2> vectors_2d_;
+  mutable solve::CgVectors<3> vectors_3d_;
 };
 
 }  // namespace meltray::terms

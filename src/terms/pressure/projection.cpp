@@ -52,7 +52,7 @@ void Projection::assemble(const Stage& s) {
       pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
         const Index column = row_of_[p.j];
         if (column < 0) return;
-        const double a = -scale * s.volume[i] * s.volume[p.j] * p.f;
+        const auto a = static_cast<float>(-scale * (s.volume[i] * s.volume[p.j]) * p.f);
         matrix_.column[out] = column;
         matrix_.off[out++] = a;
         sum += a;

@@ -34,8 +34,8 @@ SymmetricMatrix network(int n, double anchor, int cut = -1) {
     double sum = r < n ? anchor : 0;
     for (const auto& [j, w] : springs[r]) {
       a.column.push_back(j);
-      a.off.push_back(w);
-      sum += w;
+      a.off.push_back(static_cast<float>(w));
+      sum += a.off.back();
     }
     a.diagonal.push_back(sum);
     a.start.push_back(static_cast<Index>(a.column.size()));

@@ -43,7 +43,7 @@ struct HotBlock : StageSetup {
       reload(particles, patch);
       for (Index i = 0; i < patch.size(); ++i)
         stage.temperature[i] = constants.material.temperature(patch.h[i]);
-      if (!op.assembled()) op.assemble(stage);  // constant conductivity, nothing moves
+      if (rate.empty()) op.assemble(stage);  // once: constant conductivity, nothing moves
       rate.assign(patch.size(), 0.0);
       op.add_heating(stage, rate.data());
       for (Index i = 0; i < patch.size(); ++i) {

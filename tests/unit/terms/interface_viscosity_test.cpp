@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "meltray/terms/viscosity.hpp"
 #include "unit/terms/stage_setup.hpp"
@@ -13,6 +14,8 @@ using terms::ViscousOperator;
 namespace {
 
 constexpr double kDx = 5e-5;
+/// Rounding of what the operator stores.
+constexpr double kSingle = std::numeric_limits<float>::epsilon();
 const terms::InterfaceViscosityParameters kBoth{0.7, 1.0, 50, 50};
 
 ViscousOperator interface(const StageSetup& s, terms::InterfaceViscosityParameters p = kBoth) {
@@ -41,7 +44,8 @@ TEST_CASE("interface viscosity: rigid motion is free of force") {
   CHECK(test::largest(test::acceleration(s, op)) < 1e-12 * scale);
   const Vec3 omega(500, -300, 800);
   s.set_velocity([&](const Vec3& x) -> Vec3 { return omega.cross(x); });
-  CHECK(test::largest(test::acceleration(s, op)) < 1e-12 * scale);
+  // The directions of the pairs are stored in single precision.
+  CHECK(test::largest(test::acceleration(s, op)) < kSingle * scale * omega.norm() * 8 * kDx);
 }
 
 TEST_CASE("interface viscosity: acts like the kinematic viscosity alpha h c / 8 in 2-D") {
@@ -72,13 +76,14 @@ TEST_CASE("interface viscosity: only where the surface or melting is, scaled by 
   // Hot: free surface only.
   const auto hot = test::acceleration(s, interface(s));
   const auto half = test::acceleration(s, interface(s, {0.35, 1, 50, 50}));
+  const double rate = interface(s).rate(s.stage);
   int wrong = 0;
   for (Index i = 0; i < s.patch.size(); ++i) {
     const double z = s.patch.x[2][i] / kDx;
     const double size = std::abs(hot[0][i]) + std::abs(hot[1][i]) + std::abs(hot[2][i]);
     const bool near = z > 9 || z < 3;  // within 2.6 dx of a surface layer
     wrong += near ? size == 0 : size != 0;
-    wrong += std::abs(half[1][i] - 0.5 * hot[1][i]) > 1e-12 * std::abs(hot[1][i]);
+    wrong += std::abs(half[1][i] - 0.5 * hot[1][i]) > kSingle * rate;  // velocities are at most 1 m/s
   }
   CHECK(wrong == 0);
   // The solid part fades out linearly over the ramp above the melting temperature.

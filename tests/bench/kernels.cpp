@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Pair loops, lists and solvers on a rotated, jittered block of liquid: lists that profit from an aligned lattice
+// would flatter themselves. The argument of each benchmark is the number of particles along an edge. "pairs" is
+// useful directed pairs a second; threads come from OMP_NUM_THREADS.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <memory>
+
+#include "meltray/terms/conduction.hpp"
+#include "meltray/terms/pressure/projection.hpp"
+#include "meltray/terms/viscosity.hpp"
+#include "unit/terms/stage_setup.hpp"
+
+namespace {
+
+using namespace meltray;
+
+constexpr double kSpacing = 5e-5;
+constexpr double kJitter = 0.15;
+
+/// A ball of liquid cut from a rotated lattice, as many particles as a cube of `edge` along each side.
+struct Ball : test::StageSetup {
+  explicit Ball(int edge) : StageSetup(3, kSpacing) {
+    const double radius = edge * kSpacing * std::cbrt(3 / (4 * M_PI)), reach = radius + 3 * kSpacing;
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const Vec3 corner = Vec3::Constant(2 * std::ceil(radius / kSpacing) * kSpacing);
+    for_lattice(-corner, corner, [&](const Vec3& x) {
+      if (x.norm() < radius) add(turn * x, 2000, true);
+    });
+    jitter(kJitter);
+    prepare(Vec3::Constant(-reach), Vec3::Constant(reach));
+    pairs.refresh(patch, constants.kernel);
+    terms::compute_surface(stage);
+    test::Noise noise(7);
+    for (int c = 0; c < 3; ++c)
+      for (double& v : patch.v[c]) v = noise();
+    acceleration = Components{};
+    for (int c = 0; c < 3; ++c) acceleration[c].assign(patch.size(), 0.0);
+  }
+  Components acceleration;
+};
+
+Ball& ball(const benchmark::State& state) {
+  static std::map<std::int64_t, std::unique_ptr<Ball>> made;
+  auto& one = made[state.range(0)];
+  if (!one) one = std::make_unique<Ball>(static_cast<int>(state.range(0)));
+  return *one;
+}
+
+void count(benchmark::State& state, const Ball& b) {
+  state.counters["particles"] = static_cast<double>(b.patch.size());
+  state.counters["pairs"] = benchmark::Counter(static_cast<double>(b.pairs.pairs()),
+                                               benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void list_build(benchmark::State& state) {
+  Ball& b = ball(state);
+  const std::vector<std::uint8_t> all(b.patch.size(), 1);
+  for (auto _ : state) b.pairs.build(b.patch, b.selector.grid(), 0.0, all);
+  b.pairs.refresh(b.patch, b.constants.kernel);
+  count(state, b);
+}
+
+void list_refresh(benchmark::State& state) {
+  Ball& b = ball(state);
+  for (auto _ : state) b.pairs.refresh(b.patch, b.constants.kernel);
+  count(state, b);
+}
+
+void surface(benchmark::State& state) {
+  Ball& b = ball(state);
+  for (auto _ : state) terms::compute_surface(b.stage);
+  count(state, b);
+}
+
+void viscous_product(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::ViscousOperator op;
+  op.assemble(b.stage, {true, true}, {1, 1, 50, 50});
+  for (auto _ : state)
+    op.add_acceleration(b.stage, view(static_cast<const Components&>(b.patch.v)), view(b.acceleration));
+  count(state, b);
+}
+
+void conduction_product(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::ConductionOperator op;
+  op.assemble(b.stage);
+  std::vector<double> heating(b.patch.size(), 0.0);
+  for (auto _ : state) benchmark::DoNotOptimize(op.add_heating(b.stage, heating.data()));
+  count(state, b);
+}
+
+void pressure_assembly(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::Projection projection;
+  for (auto _ : state) projection.assemble(b.stage);
+  count(state, b);
+}
+
+void pressure_product(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::Projection projection;
+  projection.assemble(b.stage);
+  std::vector<double> x(projection.rows(), 1.0), y(projection.rows());
+  for (auto _ : state) solve::multiply(projection.matrix(), x, y);
+  count(state, b);
+}
+
+/// From zero to a relative residual of 10^-range(1); "iterations" beside it.
+void pressure_solve(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::Projection projection;
+  projection.assemble(b.stage);
+  std::vector<double> source;
+  projection.divergence(b.stage, view(static_cast<const Components&>(b.patch.v)), source);
+  const terms::ProjectionOptions options{terms::SurfaceEntry::csf,
+                                         std::pow(10.0, -static_cast<double>(state.range(1))), 2000};
+  int iterations = 0;
+  for (auto _ : state) {
+    std::fill(b.patch.pressure.begin(), b.patch.pressure.end(), 0.0);
+    iterations = projection.solve(b.stage, source, options).iterations;
+  }
+  state.counters["iterations"] = iterations;
+  state.counters["particles"] = static_cast<double>(b.patch.size());
+}
+
+}  // namespace
+
+#define MELTRAY_SIZES ->Arg(14)->Arg(27)->Arg(46)->Unit(benchmark::kMillisecond)->UseRealTime()
+BENCHMARK(list_build) MELTRAY_SIZES;
+BENCHMARK(list_refresh) MELTRAY_SIZES;
+BENCHMARK(surface) MELTRAY_SIZES;
+BENCHMARK(viscous_product) MELTRAY_SIZES;
+BENCHMARK(conduction_product) MELTRAY_SIZES;
+BENCHMARK(pressure_assembly) MELTRAY_SIZES;
+BENCHMARK(pressure_product) MELTRAY_SIZES;
+BENCHMARK(pressure_solve)->ArgsProduct({{14, 27, 46}, {3, 6}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_MAIN();
