@@ -9,6 +9,9 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/expected_flow.hpp"
+#include "meltray/scene/optics.hpp"
+#include "meltray/scene/presets.hpp"
 #include "meltray/scene/simulation.hpp"
 
 namespace meltray::app {
@@ -103,6 +106,12 @@ std::vector<Limit> developed_limits(const Scene& s) {
   const double h = s.domain.smoothing_ratio * s.domain.spacing;
   std::vector<Limit> out;
   const auto viscous = [h](double nu) { return 0.125 * h * h / nu; };
+  const bool weak = s.terms.pressure && s.flow.solver == scene::FlowSolver::wcsph;
+  if (weak) {
+    const double alpha = s.terms.artificial_viscosity ? s.flow.artificial_viscosity : 0.0;
+    out.push_back(
+        {"acoustic", s.time.cfl_acoustic * h / (s.flow.sound_speed * (1 + 0.6 * alpha) + kPoolSpeed)});
+  }
   if (s.terms.pressure) out.push_back({"advective", s.time.cfl_advective * h / kPoolSpeed});
   if (s.terms.surface_tension)
     out.push_back({"capillary", s.time.cfl_capillary * std::sqrt(m.density * h * h * h /
@@ -165,6 +174,24 @@ void print_derived(const Scene& s) {
          fmt::format("{:.4g}", m.sigma(m.liquidus) / (0.5 * s.laser->beam.focal_diameter)));
 }
 
+/// Why the sound speed is what it is, and what it costs.
+void print_compressibility(const Scene& s) {
+  if (!s.terms.pressure || s.flow.solver != scene::FlowSolver::wcsph) return;
+  heading("weak compressibility");
+  const double rho = s.material.density, c = s.flow.sound_speed;
+  const double speed = scene::expected_speed(s), pressure = scene::expected_pressure(s);
+  line("sound speed [m/s]", fmt::format("{:.4g}", c));
+  line("expected speed [m/s]", fmt::format("{:.3g}, Mach {:.3g}", speed, speed / c));
+  line("expected pressure [Pa]", fmt::format("{:.4g}", pressure));
+  const double variation = std::max(pressure / (rho * c * c), speed * speed / (c * c));
+  line("expected density variation", fmt::format("{:.2g} %{}", 100 * variation,
+                                                 variation > scene::DensityVariation::kAllowed
+                                                     ? ", more than 3 %: raise flow.sound_speed_m_s"
+                                                     : ""));
+  line("sound speed for 1 % [m/s]",
+       fmt::format("{:.3g}; steps shrink with its inverse", scene::default_sound_speed(s)));
+}
+
 void print_laser(const Scene& s) {
   if (!s.laser) return;
   heading("laser");
@@ -185,8 +212,9 @@ void print_laser(const Scene& s) {
     line("absorptance", fmt::format("{:g} at every bounce", *t.fixed_absorptance));
   else
     line("absorptance at normal incidence",
-         fmt::format("solid {:.3f}, liquid {:.3f} (Fresnel)", laser::absorptance(s.material.index_solid, 1),
-                     laser::absorptance(s.material.index_liquid, 1)));
+         fmt::format("solid {:.3f}, liquid {:.3f} (Fresnel, optics {})",
+                     laser::absorptance(scene::laser_index(s).solid, 1),
+                     laser::absorptance(scene::laser_index(s).liquid, 1), scene::name_of(s.laser->optics)));
   line("rays, retrace at latest every [s]", fmt::format("{}, {:g}", t.rays, s.laser->retrace_interval));
 }
 
@@ -237,7 +265,7 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
   heading("resolved case");
   fmt::print("{}", scene::write_case(scene));
   heading("model");
-  line("row of Table 1", scene.model);
+  line("row of Table 1", scene::row_of_table(scene));
   std::vector<Limit> limits;
   for (const StepLimit& l : simulation.step_limits()) limits.push_back({std::string(l.name), l.seconds});
   print_terms(simulation);
@@ -251,6 +279,7 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
     if (developed > 0) step = step > 0 ? std::min(step, developed) : developed;
   }
   print_derived(scene);
+  print_compressibility(scene);
   print_laser(scene);
   print_run_time(simulation, step);
   return kExitOk;

@@ -220,6 +220,14 @@ void RunLoop::write_row() {
   const auto timer = simulation_.timers().measure(Part::observe);
   const auto row = observe::measure(simulation_, state_.since_row);
   history_.append(observe::history_line(row));
+  if (row.density_variation > scene::DensityVariation::kAllowed && !warned_of_density_) {
+    warned_of_density_ = true;
+    log_.warn(
+        fmt::format("density varies by {:.1f} % at t = {:.6g} ms, more than {:.0f} %: raise "
+                    "flow.sound_speed_m_s (now {:g} m/s); the step shrinks with its inverse",
+                    100 * row.density_variation, 1e3 * row.time, 100 * scene::DensityVariation::kAllowed,
+                    simulation_.scene().flow.sound_speed));
+  }
   row_time_ = row.time;
   state_.since_row = {};
   progress_.row(row);

@@ -88,6 +88,7 @@ class RunLoop {
   double start_time_, wall_before_;
   double row_time_ = -1;         ///< of the last row
   double checkpoint_time_ = -1;  ///< of the newest checkpoint
+  bool warned_of_density_ = false;
 };
 
 }  // namespace meltray::app

@@ -35,6 +35,7 @@ void columns(const HistoryRow& r, F&& f) {
   f("active_particles", r.active);
   f("ejected_mass_kg", r.ejected_mass);
   f("evaporative_loss_w", r.evaporative_loss);
+  f("density_variation", r.density_variation);
   f("dt_s", r.dt);
   f("limiter", r.limiter);
   f("steps", r.steps);

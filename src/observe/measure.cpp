@@ -76,6 +76,7 @@ HistoryRow measure(const scene::Simulation& simulation, const StepsSinceRow& sin
   row.active = simulation.active_count();
   row.ejected_mass = simulation.mass().ejected;
   row.evaporative_loss = simulation.evaporative_loss();
+  row.density_variation = simulation.density_variation().now;
   row.dt = since.mean_step();
   row.limiter = since.main_limiter();
   row.steps = simulation.counters().steps;

@@ -9,6 +9,8 @@
 
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/version.hpp"
+#include "meltray/scene/optics.hpp"
+#include "meltray/scene/presets.hpp"
 
 namespace meltray::observe {
 namespace {
@@ -49,8 +51,8 @@ Json momentum_json(const scene::MomentumBudget& m) {
   const Vec3 impulses = m.gravity + m.surface + m.pressure + m.viscosity + m.shifting + m.phase_change;
   const Vec3 gap = m.current - m.initial - impulses + m.ejected;
   double largest = 0;
-  for (const Vec3& v :
-       {m.initial, m.current, m.gravity, m.surface, m.pressure, m.viscosity, m.shifting, m.phase_change, m.ejected})
+  for (const Vec3& v : {m.initial, m.current, m.gravity, m.surface, m.pressure, m.viscosity, m.shifting,
+                        m.phase_change, m.ejected})
     largest = std::max(largest, v.norm());
   return {{"unit", "kg m/s"},
           {"initial", vector(m.initial)},
@@ -71,7 +73,8 @@ Json mass_json(const scene::MassBudget& m) {
           {"ejected_kg", m.ejected},
           {"cropped_kg", m.cropped},
           {"evaporated_not_removed_kg", m.evaporated_not_removed},
-          {"relative_error", m.initial > 0 ? std::abs(m.current + m.ejected + m.cropped - m.initial) / m.initial : 0}};
+          {"relative_error",
+           m.initial > 0 ? std::abs(m.current + m.ejected + m.cropped - m.initial) / m.initial : 0}};
 }
 
 Json laser_json(const scene::LaserBudget& l) {
@@ -85,6 +88,31 @@ Json laser_json(const scene::LaserBudget& l) {
           {"worst_trace_relative_error", l.worst},
           {"traces", l.traces},
           {"dropped_rays", l.dropped_rays}};
+}
+
+Json density_json(const scene::Simulation& s) {
+  if (s.scene().flow.solver != scene::FlowSolver::wcsph) return nullptr;
+  const auto d = s.density_variation();
+  return {{"now", d.now},
+          {"largest", d.largest},
+          {"allowed", scene::DensityVariation::kAllowed},
+          {"of_particles", 0.99},
+          {"sound_speed_m_s", s.scene().flow.sound_speed}};
+}
+
+Json index_json(std::complex<double> m) {
+  return {{"n", m.real()}, {"k", m.imag()}, {"absorptance_normal", laser::absorptance(m, 1)}};
+}
+
+/// Which refractive index the laser met.
+Json optics_json(const scene::Scene& s) {
+  if (!s.laser) return nullptr;
+  if (const auto fixed = s.laser->trace.fixed_absorptance)
+    return {{"choice", "fixed"}, {"absorptance", *fixed}};
+  const auto index = scene::laser_index(s);
+  return {{"choice", scene::name_of(s.laser->optics)},
+          {"solid", index_json(index.solid)},
+          {"liquid", index_json(index.liquid)}};
 }
 
 }  // namespace
@@ -115,6 +143,9 @@ std::string summary_text(const RunRecord& r, scene::Simulation* simulation) {
 
   const auto c = simulation->counters();
   const double simulated = simulation->time() - r.session_start;
+  j["model"] = scene::row_of_table(simulation->scene());
+  j["optics"] = optics_json(simulation->scene());
+  j["density_variation"] = density_json(*simulation);
   j["time_s"] = simulation->time();
   j["wall_seconds_per_simulated_ms"] = simulated > 0 ? Json(r.session_wall / (1e3 * simulated)) : Json();
   j["particles"] = {{"liquid", simulation->liquid_count()}, {"active", r.active}};

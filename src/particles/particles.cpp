@@ -26,6 +26,7 @@ void Particles::archive(Archive& a) {
     a.values(std::string("particles/velocity_") + kAxis[c], v[c]);
   }
   a.values("particles/enthalpy", h);
+  if (!density.empty()) a.values("particles/density", density);
   a.values("particles/mass", mass);
   a.values("particles/smoothing_length", smoothing);
   a.values("particles/pressure", pressure);

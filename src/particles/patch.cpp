@@ -139,6 +139,8 @@ void reload(const Particles& particles, Patch& patch) {
   patch.mass.resize(n);
   patch.smoothing.resize(n);
   patch.pressure.resize(n);
+  const bool dense = !particles.density.empty();
+  if (dense) patch.density.resize(n);
   patch.liquid.resize(n);
   patch.wall.resize(n);
   parallel_for(n, [&](Index k) {
@@ -151,12 +153,14 @@ void reload(const Particles& particles, Patch& patch) {
     patch.mass[k] = particles.mass[i];
     patch.smoothing[k] = particles.smoothing[i];
     patch.pressure[k] = particles.pressure[i];
+    if (dense) patch.density[k] = particles.density[i];
     patch.liquid[k] = particles.is_liquid(i);
     patch.wall[k] = particles.wall[i];
   });
 }
 
 void write_back(const Patch& patch, Particles& particles) {
+  const bool dense = !particles.density.empty();
   parallel_for(patch.size(), [&](Index k) {
     const Index i = patch.global[k];
     if (patch.liquid[k])
@@ -166,6 +170,7 @@ void write_back(const Patch& patch, Particles& particles) {
       }
     particles.h[i] = patch.h[k];
     particles.pressure[i] = patch.pressure[k];
+    if (dense) particles.density[i] = patch.density[k];
   });
 }
 

@@ -165,6 +165,18 @@ void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& 
       }
 }
 
+/// Every particle starts without pressure and fills its lattice site: with thermal expansion the mass of melt
+/// follows from its temperature.
+void set_densities(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
+  out.density.assign(out.size(), k.density);
+  if (!scene.flow.thermal_expansion) return;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!out.is_liquid(i)) continue;
+    out.density[i] = scene.material.density_of_t(out.temperature[i]);
+    out.mass[i] = out.density[i] * std::pow(k.spacing, k.dim);
+  }
+}
+
 }  // namespace
 
 terms::SceneConstants build_constants(const Scene& scene) {
@@ -202,6 +214,7 @@ Particles build_particles(const Scene& scene, const terms::SceneConstants& const
   if (out.size() == 0)
     throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");
   add_dummies(scene, constants, out);
+  if (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph) set_densities(scene, constants, out);
   return out;
 }
 

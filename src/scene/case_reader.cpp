@@ -8,6 +8,7 @@
 
 #include "meltray/core/nearest.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/optics.hpp"
 #include "scene/case_check.hpp"
 #include "scene/keys.hpp"
 
@@ -23,9 +24,9 @@ void for_each_key(const Scene& scene, F&& f) {
 }
 
 /// Terms that are not smooth or have no stiff part: they have no entry in [splitting].
-constexpr std::array<std::string_view, 10> kAlwaysExplicit = {
-    "pressure", "surface_tension", "marangoni", "wetting", "recoil",
-    "laser",    "buoyancy",        "gravity",   "melting", "radiation"};
+constexpr std::array<std::string_view, 11> kAlwaysExplicit = {
+    "pressure", "surface_tension", "marangoni",           "wetting", "recoil", "laser", "buoyancy", "gravity",
+    "melting",  "radiation",       "artificial_viscosity"};
 
 void refuse_fixed_splitting(const Entry& entry) {
   constexpr std::string_view prefix = "splitting.";
@@ -135,8 +136,9 @@ void derive_defaults(const Document& document, Scene& scene) {
     if (key.derive && !document.given(path)) key.derive(scene, i, document);
   });
   if (scene.laser) {
-    scene.laser->trace.index_solid = scene.material.index_solid;
-    scene.laser->trace.index_liquid = scene.material.index_liquid;
+    const auto index = laser_index(scene);
+    scene.laser->trace.index_solid = index.solid;
+    scene.laser->trace.index_liquid = index.liquid;
   }
 }
 
@@ -180,6 +182,7 @@ Scene build(const Document& document) {
   check_geometry(scene, document);
   check_material(scene, document);
   check_terms(scene, document);
+  check_flow(scene, document);
   check_time(scene, document);
   check_laser(scene, document);
   return scene;

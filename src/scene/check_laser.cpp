@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include "meltray/materials/optics.hpp"
 #include "scene/case_check.hpp"
 
 namespace meltray::scene {
@@ -46,6 +47,11 @@ void check_laser(const Scene& scene, const Document& document) {
            fmt::format("\"fresnel\" with material \"{}\", whose refractive index is not known",
                        scene.material.name),
            "a number > 0 and <= 1, or material.refractive_* with it");
+  if (scene.laser->optics == Optics::hot_melt && !hot_melt_index(scene.material.name))
+    refuse(document.place("laser.optics"), "laser.optics",
+           fmt::format("\"hot_melt\" with material \"{}\", of which no such index is known",
+                       scene.material.name),
+           "\"by_phase\" or \"solid\"");
   const auto& xy = trace.polarisation_xy;
   if (xy[0] == 0 && xy[1] == 0)
     refuse(document.place("laser.polarisation_direction"), "laser.polarisation_direction", "[0, 0]",

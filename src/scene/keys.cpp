@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "meltray/core/nearest.hpp"
+#include "meltray/scene/presets.hpp"
 #include "scene/keys_build.hpp"
 #include "scene/power_table.hpp"
 #include "scene/property_value.hpp"
@@ -89,8 +90,10 @@ std::vector<Key> top_keys() {
   Key model{.path = "model",
             .kind = Kind::word,
             .unit = "",
-            .sentence = "Model of the flow: incompressible SPH.",
-            .words = {"isph"}};
+            .sentence =
+                "Row of the paper's Table 1: sets solver, numerical viscosity, expansion, buoyancy and "
+                "shifting where their keys are not given."};
+  for (const Preset& p : presets()) model.words.emplace_back(p.model);
   model.get = [](const Scene& s, int) { return Value{s.model}; };
   model.set = [](Scene& s, int, const Value& v) { s.model = *v.text(); };
   return {title, model};
@@ -180,8 +183,8 @@ const std::vector<std::string>& face_names() {
 const std::vector<Key>& all_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (auto section : {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, flow_keys,
-                         surface_keys, heat_keys, laser_keys, time_keys, output_keys})
+    for (auto section : {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, solver_keys,
+                         flow_keys, surface_keys, heat_keys, laser_keys, time_keys, output_keys})
       append(all, section());
     return all;
   }();

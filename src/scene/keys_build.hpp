@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "meltray/scene/presets.hpp"
+#include "scene/case_document.hpp"
 #include "scene/keys.hpp"
 
 /// Binding of a key to a member of the scene `s`, with `i` for the face or body.
@@ -128,6 +130,19 @@ template <class Member>
 Need term(const char* name, Member member) {
   const std::string key = std::string("terms.") + name;
   return {key + " = true", {key}, [member](const Scene& s, int) { return s.terms.*member; }};
+}
+
+/// The need for a solver of the flow.
+Need solved_by(FlowSolver solver);
+
+/// Default from the row of Table 1 that the case names, where it names one and has a flow: `member` is the
+/// row's choice, `at` the place in the scene.
+template <class Member, class At>
+Key of_row(Key key, const char* else_text, Member member, At at) {
+  return key.otherwise(std::string("of the model where that is given, else ") + else_text,
+                       [member, at](Scene& s, int i, const Document& d) {
+                         if (d.given("model") && s.terms.pressure) at(s, i) = preset_of(s.model).*member;
+                       });
 }
 
 inline void append(std::vector<Key>& keys, std::vector<Key> more) {

@@ -140,6 +140,11 @@ std::vector<Key> trace_keys() {
   return {
       integer("laser.rays", between(1, 10000000), MELTRAY_AT(laser->trace.rays), "Rays of one trace."),
       absorptivity(),
+      word<Optics>("laser.optics",
+                   {{"by_phase", Optics::by_phase}, {"solid", Optics::solid}, {"hot_melt", Optics::hot_melt}},
+                   MELTRAY_AT(laser->optics),
+                   "Refractive index of the melt: its own, that of the solid, or that of melt near boiling.")
+          .only_if(fresnel()),
       word<laser::Polarisation>(
           "laser.polarisation",
           {{"averaged", laser::Polarisation::averaged}, {"tracked", laser::Polarisation::tracked}},

@@ -18,9 +18,13 @@ std::vector<Key> term_keys() {
       boolean("terms.conduction", MELTRAY_AT(terms.conduction), "Heat conduction, 2nd term of Eq. (4)."),
       boolean("terms.viscosity", MELTRAY_AT(terms.viscosity),
               "Physical viscosity of the melt, 2nd term of Eq. (3)."),
-      boolean("terms.interface_viscosity", MELTRAY_AT(terms.interface_viscosity),
-              "Numerical viscosity at the free surface and next to the solid."),
-      boolean("terms.pressure", MELTRAY_AT(terms.pressure), "Pressure from the projection, Eq. (6)."),
+      of_row(boolean("terms.interface_viscosity", MELTRAY_AT(terms.interface_viscosity),
+                     "Numerical viscosity at the free surface and next to the solid."),
+             "false", &Preset::interface_viscosity, MELTRAY_AT(terms.interface_viscosity)),
+      of_row(boolean("terms.artificial_viscosity", MELTRAY_AT(terms.artificial_viscosity),
+                     "Numerical viscosity between particles that approach each other."),
+             "false", &Preset::artificial_viscosity, MELTRAY_AT(terms.artificial_viscosity)),
+      boolean("terms.pressure", MELTRAY_AT(terms.pressure), "Pressure: the material flows."),
       boolean("terms.surface_tension", MELTRAY_AT(terms.surface_tension),
               "Surface tension normal to the surface."),
       boolean("terms.marangoni", MELTRAY_AT(terms.marangoni),
@@ -30,7 +34,8 @@ std::vector<Key> term_keys() {
       boolean("terms.recoil", MELTRAY_AT(terms.recoil), "Recoil pressure of the vapour."),
       boolean("terms.evaporation", MELTRAY_AT(terms.evaporation), "Heat lost with the vapour."),
       boolean("terms.radiation", MELTRAY_AT(terms.radiation), "Heat radiated by the surface."),
-      boolean("terms.buoyancy", MELTRAY_AT(terms.buoyancy), "Buoyancy of hot melt, Eq. (8)."),
+      of_row(boolean("terms.buoyancy", MELTRAY_AT(terms.buoyancy), "Buoyancy of hot melt, Eq. (8)."), "false",
+             &Preset::buoyancy, MELTRAY_AT(terms.buoyancy)),
       boolean("terms.gravity", MELTRAY_AT(terms.gravity), "Weight of the melt."),
       boolean("terms.melting", MELTRAY_AT(terms.melting), "Solid melts and melt solidifies."),
   };
@@ -38,29 +43,36 @@ std::vector<Key> term_keys() {
 
 std::vector<Key> flow_keys() {
   const Need pressure = term("pressure", &Terms::pressure);
-  const Need interface = term("interface_viscosity", &Terms::interface_viscosity);
+  const Need isph = solved_by(FlowSolver::isph);
+  Need interface = term("interface_viscosity", &Terms::interface_viscosity);
+  interface.keys.push_back("model");
   return {
       number("flow.pressure_tolerance", "", above_to(0, 0.1), MELTRAY_AT(flow.pressure_tolerance),
              "Relative residual at which the pressure solve ends.")
-          .only_if(pressure),
+          .only_if(pressure)
+          .only_if(isph),
       integer("flow.pressure_max_iterations", between(1, 1000000), MELTRAY_AT(flow.pressure_max_iterations),
               "Largest number of iterations of a pressure solve.")
-          .only_if(pressure),
+          .only_if(pressure)
+          .only_if(isph),
       boolean("flow.free_surface", MELTRAY_AT(flow.free_surface),
               "false: the fluid fills a closed or periodic box, and a loose spot in it is not taken for a "
               "surface.")
-          .only_if(pressure),
+          .only_if(pressure)
+          .only_if(isph),
       number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),
              "Time in which the projection takes back errors of density; 0: five spacings at the speed that "
              "the scene implies.")
-          .only_if(pressure),
-      number("flow.shifting", "", between(0, 100), MELTRAY_AT(flow.shifting),
-             "Coefficient of the velocity that keeps particles evenly spread; 0: off.")
+          .only_if(pressure)
+          .only_if(isph),
+      of_row(number("flow.shifting", "", between(0, 100), MELTRAY_AT(flow.shifting),
+                    "Coefficient of the velocity that keeps particles evenly spread; 0: off."),
+             "0", &Preset::shifting, MELTRAY_AT(flow.shifting))
           .only_if(pressure),
       number("flow.shifting_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.shifting_speed),
              "Least speed that shifting reckons with, so that it acts at stagnation points.")
           .only_if({"flow.shifting > 0",
-                    {"flow.shifting"},
+                    {"flow.shifting", "model"},
                     [](const Scene& s, int) { return s.flow.shifting > 0; }}),
       number(
           "flow.reference_speed_m_s", "m/s", at_least(0), MELTRAY_AT(flow.reference_speed),
@@ -89,7 +101,8 @@ std::vector<Key> surface_keys() {
       word<SurfaceEntry>("surface.entry", {{"csf", SurfaceEntry::csf}, {"pressure", SurfaceEntry::pressure}},
                          MELTRAY_AT(surface.entry),
                          "Surface forces act as volume forces (csf) or as the pressure at the surface.")
-          .only_if(forces),
+          .only_if(forces)
+          .only_if(solved_by(FlowSolver::isph)),
       word<RecoilOnset>("surface.recoil_onset",
                         {{"smooth", RecoilOnset::smooth},
                          {"cutoff", RecoilOnset::cutoff},

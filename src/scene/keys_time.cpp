@@ -87,6 +87,9 @@ std::vector<Key> accuracy_keys() {
              "Absolute error of positions allowed in a step."),
       number("time.atol_velocity_m_s", "m/s", above(0), MELTRAY_AT(time.atol_velocity),
              "Absolute error of velocities allowed in a step."),
+      number("time.atol_density", "density", above(0), MELTRAY_AT(time.atol_density),
+             "Absolute error of densities allowed in a step.")
+          .only_if(solved_by(FlowSolver::wcsph)),
       number("time.atol_temperature_k", "K", above(0), MELTRAY_AT(time.atol_temperature),
              "Absolute error of temperatures allowed in a step."),
   };
@@ -102,6 +105,8 @@ std::vector<Key> limit_keys() {
   const Need beam = {"[laser]", {}, [](const Scene& s, int) { return s.laser.has_value(); }};
   const Range range = above_to(0, 10);
   std::vector<Key> keys = {
+      number("time.cfl_acoustic", "", range, MELTRAY_AT(time.cfl_acoustic), "Step over h / (c + |v|).")
+          .only_if(solved_by(FlowSolver::wcsph)),
       number("time.cfl_advective", "", range, MELTRAY_AT(time.cfl_advective), "Step over h / |v|."),
       number("time.cfl_capillary", "", range, MELTRAY_AT(time.cfl_capillary),
              "Step over sqrt(rho h^3 / (2 pi sigma)).")
@@ -160,7 +165,8 @@ std::vector<Key> splitting_keys() {
           "splitting.projection", {{"step", Projection::step}, {"stage", Projection::stage}},
           MELTRAY_AT(flow.projection),
           "Pressure is solved for once after each step, or in every stage (which keeps the order).")
-          .only_if(term("pressure", &Terms::pressure)),
+          .only_if(term("pressure", &Terms::pressure))
+          .only_if(solved_by(FlowSolver::isph)),
       number("splitting.linear_tolerance", "", above_to(0, 0.1), MELTRAY_AT(time.linear_tolerance),
              "Relative residual at which implicit solves end.")
           .only_if(implicit),

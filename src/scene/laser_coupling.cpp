@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meltray/scene/optics.hpp"
+
 namespace meltray::scene {
 
 namespace {
@@ -14,8 +16,9 @@ constexpr double kDepositRadius = 1.3;
 
 laser::TraceOptions options_of(const Scene& scene) {
   laser::TraceOptions o = scene.laser->trace;
-  o.index_solid = scene.material.index_solid;
-  o.index_liquid = scene.material.index_liquid;
+  const LaserIndex index = laser_index(scene);
+  o.index_solid = index.solid;
+  o.index_liquid = index.liquid;
   return o;
 }
 

@@ -8,6 +8,7 @@
 
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/scene/expected_flow.hpp"
 
 namespace meltray::scene {
 
@@ -29,21 +30,6 @@ terms::RecoilOnset onset(RecoilOnset o) {
 
 /// Time constants of the projections' corrections, in times that the flow takes to cross a spacing.
 constexpr double kDriftCrossings = 5, kDivergenceCrossings = 0.2;
-
-/// The largest of the speeds that a scene names or implies [m/s]; 1 m/s where there is none.
-double expected_speed(const Scene& scene) {
-  const Domain& domain = scene.domain;
-  double speed = std::abs(domain.velocity_scale);
-  for (const Body& body : domain.bodies) speed = std::max(speed, body.velocity.norm());
-  for (const Face& face : domain.faces) speed = std::max(speed, face.velocity.norm());
-  const double rho = scene.material.density, height = (domain.max - domain.min)[domain.dimension - 1];
-  if (scene.terms.gravity) speed = std::max(speed, std::sqrt(domain.gravity * height));
-  speed = std::max(speed, std::sqrt(2 * scene.surface.recoil_pressure / rho));
-  if (scene.terms.surface_tension)
-    speed =
-        std::max(speed, std::sqrt(scene.material.sigma(scene.material.liquidus) / (rho * domain.spacing)));
-  return speed > 0 ? speed : 1.0;
-}
 
 /// What the case file says, as far as the method leaves a choice; "auto" starts explicit.
 Partitions initial_partitions(const Time& time) {
@@ -79,6 +65,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   divergence_time = kDivergenceCrossings * crossing;
   partitions = initial_partitions(scene.time);
+  if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) weak_.emplace(scene);
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
@@ -112,8 +99,13 @@ bool Model::implicit_is_linear() const {
          !((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses);
 }
 
+std::size_t Model::enthalpy_begin() const {
+  const std::size_t fields = 2 * constants_.dim + (weakly_compressible() ? 1 : 0);
+  return flows() ? fields * stage.moving.size() : 0;
+}
+
 std::size_t Model::crossings_begin() const {
-  return (flows() ? 2 * constants_.dim * stage.moving.size() : 0) + stage.heated.size();
+  return enthalpy_begin() + stage.heated.size();
 }
 
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const {
@@ -125,7 +117,10 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
       y[c * nm + k] = patch.x[c][stage.moving[k]];
       y[(dim + c) * nm + k] = patch.v[c][stage.moving[k]];
     }
-  for (std::size_t k = 0; k < nh; ++k) y[2 * dim * nm + k] = patch.h[stage.heated[k]];
+  const std::size_t h = enthalpy_begin();
+  if (weakly_compressible())
+    for (std::size_t k = 0; k < nm; ++k) y[2 * dim * nm + k] = patch.density[stage.moving[k]];
+  for (std::size_t k = 0; k < nh; ++k) y[h + k] = patch.h[stage.heated[k]];
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
 
   const Time& time = scene_.time;
@@ -136,7 +131,8 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
   // Positions and enthalpies have no natural zero: their error counts absolutely.
   add("position", 0, dim * nm, 0.0, time.atol_position * constants_.spacing);
   add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
-  add("enthalpy", 2 * dim * nm, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
+  if (weakly_compressible()) add("density", 2 * dim * nm, nm, 0.0, time.atol_density * constants_.density);
+  add("enthalpy", h, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
   add("crossings", crossings_begin(), terms::Crossings::kCount, 0.0, 1e100);
 }
 
@@ -145,21 +141,9 @@ void Model::invalidate() {
   last_y_.clear();
 }
 
-void Model::evaluate(double t, const double* y) {
-  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0;
+void Model::unpack(const double* y) {
+  const std::size_t nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
-  // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
-  // coefficients that rest on them are frozen at the start of the step, and renewed for the projection.
-  const bool same_x = geometry_valid_ && last_y_.size() == n &&
-                      (freezes_geometry() || std::equal(y, y + dim * nm, last_y_.begin()));
-  const bool same_h =
-      last_y_.size() == n && std::equal(y + 2 * dim * nm, y + n, last_y_.begin() + 2 * dim * nm);
-  const bool same_v =
-      last_y_.size() == n && std::equal(y + dim * nm, y + 2 * dim * nm, last_y_.begin() + dim * nm);
-  const bool moved = !(last_y_.size() == n && std::equal(y, y + dim * nm, last_y_.begin()));
-  if (same_x && same_h && same_v && !moved && t == stage.t) return;
-  last_y_.assign(y, y + n);
-  stage.t = t;
   for (int c = 0; c < dim; ++c) {
     const double *const x = y + c * nm, *const v = y + (dim + c) * nm;
     parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
@@ -167,13 +151,40 @@ void Model::evaluate(double t, const double* y) {
       patch.v[c][stage.moving[k]] = v[k];
     });
   }
-  const double* const h = y + 2 * dim * nm;
+  if (weakly_compressible()) {
+    const double* const rho = y + 2 * dim * nm;
+    parallel_for(static_cast<std::ptrdiff_t>(nm),
+                 [&](std::ptrdiff_t k) { patch.density[stage.moving[k]] = rho[k]; });
+  }
+  const double* const h = y + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { patch.h[stage.heated[k]] = h[k]; });
+}
 
-  if (!same_x) {
+void Model::evaluate(double t, const double* y) {
+  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin();
+  const bool known = last_y_.size() == n;
+  const auto same = [&](std::size_t begin, std::size_t end) {
+    return known && std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
+  };
+  const bool still = same(0, constants_.dim * nm), same_h = same(h, n);
+  if (geometry_valid_ && still && same(constants_.dim * nm, h) && same_h && t == stage.t) return;
+  // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
+  // coefficients that rest on them are frozen at the start of the step, and renewed for the projection. A
+  // weakly compressible step is so short that only the pairs of moving particles and pressures are renewed in
+  // its stages.
+  const bool same_pairs = geometry_valid_ && known && (projects_steps() || still);
+  const bool same_surface = geometry_valid_ && (weakly_compressible() || same_pairs);
+  last_y_.assign(y, y + n);
+  stage.t = t;
+  unpack(y);
+
+  if (!same_pairs) {
     const auto timer = timers_.measure(Part::neighbours);
-    pairs.refresh(patch, constants_.kernel);
+    if (weakly_compressible() && geometry_valid_)
+      pairs.refresh(patch, constants_.kernel, stage.moving);
+    else
+      pairs.refresh(patch, constants_.kernel);
   }
   const auto update_temperature = [&](Index i) {
     stage.temperature[i] = constants_.material.temperature(patch.h[i]);
@@ -183,17 +194,23 @@ void Model::evaluate(double t, const double* y) {
   else if (!same_h)
     parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                  [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
-  if (needs_surface() && !same_x) {
+  if (weakly_compressible()) weak_->state.update(stage);
+  if (needs_surface() && !same_surface) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);
     if (scene_.terms.wetting) wetting_.turn_normals(stage);
   }
+  if (weakly_compressible()) {
+    const auto timer = timers_.measure(Part::pressure);
+    weak_->state.extrapolate(stage);
+    if (!same_surface) update_surface_pressure();
+  }
   geometry_valid_ = true;
-  if (!same_x || (!same_h && !freezes_geometry()))
+  if (!same_surface || (!same_h && !projects_steps() && !weakly_compressible()))
     implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
 }
 
-/// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure solve needs it.
+/// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure needs it.
 void Model::update_surface_pressure() {
   const Terms& terms = scene_.terms;
   if (!terms.surface_tension && !terms.recoil) return;
@@ -230,7 +247,12 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
       dv[k] = acceleration_[c][i];
     });
   }
-  double* const dh = rate + 2 * dim * nm;
+  if (weakly_compressible()) {
+    double* const drho = rate + 2 * dim * nm;
+    parallel_for(static_cast<std::ptrdiff_t>(nm),
+                 [&](std::ptrdiff_t k) { drho[k] = transport ? density_rate_[stage.moving[k]] : 0.0; });
+  }
+  double* const dh = rate + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { dh[k] = heating_[stage.heated[k]]; });
   crossings.write(rate + crossings_begin());
@@ -296,7 +318,6 @@ void Model::explicit_rate(double t, const double* y, double* rate) {
   terms::Rates rates = cleared_rates();
   terms::Crossings crossings;
   if (flows()) {
-    const bool in_stage = scene_.flow.projection == Projection::stage;
     add_forces(rates, false, crossings);
     if (shifting_.coefficient > 0) {
       const auto timer = timers_.measure(Part::forces);
@@ -305,7 +326,10 @@ void Model::explicit_rate(double t, const double* y, double* rate) {
       shifting_.add_rates(stage, view(transport_), rates.acceleration);
       crossings.shifting = total_force() - before;
     }
-    if (in_stage) pressure_in_stage(rates, crossings);
+    if (weakly_compressible())
+      add_pressure_rates(rates, crossings);
+    else if (!projects_steps())
+      pressure_in_stage(rates, crossings);
   }
   add_heat(rates, false, crossings);
   finish_rates(y, rate, crossings, true);
@@ -346,7 +370,7 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
   const bool conducts = scene_.terms.conduction && partitions.conduction;
   if (!losses && !conducts) return true;
   const auto timer = timers_.measure(Part::heat);
-  double* const bh = b + 2 * dim * nm;
+  double* const bh = b + enthalpy_begin();
   loss_slope_.assign(stage.size(), 0.0);
   if (losses) losses_.slope(stage, loss_slope_.data());
   solve_h_x_.assign(stage.size(), 0.0);

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "meltray/core/timers.hpp"
 #include "meltray/scene/scene.hpp"
 #include "meltray/scene/simulation.hpp"
+#include "meltray/terms/artificial_viscosity.hpp"
 #include "meltray/terms/conduction.hpp"
 #include "meltray/terms/evaporation.hpp"
 #include "meltray/terms/pressure/projection.hpp"
+#include "meltray/terms/pressure/weakly_compressible.hpp"
 #include "meltray/terms/shifting.hpp"
 #include "meltray/terms/stage.hpp"
 #include "meltray/terms/surface_forces.hpp"
@@ -31,8 +34,19 @@ inline bool has_two_sides(Method m) {
   return m == Method::imex || m == Method::euler;
 }
 
-/// The active terms of a scene as an ODE on the patch: y = [x | v | h | crossings] of the particles that move
-/// and those that exchange heat; f_E and f_I are sums over the terms of each partition.
+/// Terms of the weakly compressible flow, set up from a scene; coefficients are 0 where a term is off.
+struct WeaklyCompressible {
+  explicit WeaklyCompressible(const Scene& scene);
+  terms::EquationOfState state;
+  terms::Continuity continuity;
+  terms::DensityDiffusion diffusion;
+  terms::PressureForce force;
+  terms::ArtificialViscosity artificial;
+};
+
+/// The active terms of a scene as an ODE on the patch: y = [x | v | rho | h | crossings] of the particles
+/// that move and those that exchange heat, rho only in weakly compressible scenes; f_E and f_I are sums over
+/// the terms of each partition.
 class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
@@ -41,6 +55,8 @@ class Model : public OdeProblem {
   void pack(std::vector<double>& y, std::vector<StateField>& fields) const;
   /// Copies y into the patch and makes geometry, temperatures and surface those of y.
   void evaluate(double t, const double* y);
+  /// Copies y into the patch, no more: the end of a step whose geometry the next one evaluates.
+  void unpack(const double* y);
   /// Forgets what evaluate() may reuse; call when the patch or its lists have changed.
   void invalidate();
   /// One projection over a step that has just been taken: Eq. (6) at the patch's positions; corrects v and x.
@@ -65,6 +81,13 @@ class Model : public OdeProblem {
   /// Where the crossings stand in y; after a step they hold its integrals [J, kg, N s].
   std::size_t crossings_begin() const;
   bool flows() const { return scene_.terms.pressure; }
+  bool weakly_compressible() const { return weak_.has_value(); }
+  /// One projection after each step, with all geometry frozen over the step.
+  bool projects_steps() const {
+    return flows() && !weakly_compressible() && scene_.flow.projection == Projection::step;
+  }
+  /// Density with which a resting particle of the patch joins the melt: it keeps its pressure [kg/m^3].
+  double density_on_melting(Index i) const;
 
   terms::Stage stage;
   Patch patch;
@@ -90,7 +113,9 @@ class Model : public OdeProblem {
   void count_solve(const solve::SolveReport& report, double t);
   terms::ViscousChoice viscous(bool implicit_part) const;
   bool needs_surface() const;
-  bool freezes_geometry() const { return flows() && scene_.flow.projection == Projection::step; }
+  std::size_t enthalpy_begin() const;
+  void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
+  double acoustic_step(double speed) const;
 
   const Scene& scene_;
   const terms::SceneConstants& constants_;
@@ -107,9 +132,10 @@ class Model : public OdeProblem {
   terms::Buoyancy buoyancy_;
   terms::Shifting shifting_;
   terms::ProjectionOptions projection_options_;
+  std::optional<WeaklyCompressible> weak_;
 
   Components acceleration_, transport_, all_forces_;  ///< scratch, one entry per patch particle
-  std::vector<double> heating_, surface_pressure_, loss_slope_, source_, other_, start_x_;
+  std::vector<double> heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, start_x_;
   Components solve_b_, solve_x_;
   std::vector<double> solve_h_b_, solve_h_x_;
   std::vector<double> last_y_;  ///< state that stage and patch stand for

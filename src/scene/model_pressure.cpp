@@ -101,8 +101,15 @@ std::string Model::blame(Index i, double dt) {
       shifting_.add_rates(stage, view(transport_), a);
     });
   update_surface_pressure();
-  projection.assemble(stage);
-  if (projection.rows() > 0) {
+  if (weakly_compressible()) {
+    pull("pressure", [&](auto& a) { weak_->force.add_acceleration(stage, a); });
+    pull("surface force", [&](auto& a) { weak_->force.add_surface_force(stage, a); });
+    if (weak_->artificial.alpha > 0)
+      pull("artificial viscosity", [&](auto& a) { weak_->artificial.add_acceleration(stage, a); });
+  } else {
+    projection.assemble(stage);
+  }
+  if (!weakly_compressible() && projection.rows() > 0) {
     projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
     for (double& s : source_) s /= dt;
     projection.solve(stage, source_, projection_options_);
@@ -133,6 +140,7 @@ std::vector<StepLimit> Model::step_limits() {
       return std::sqrt(v2);
     });
     if (speed > 0) limits.push_back({time.cfl_advective * h / speed, "advective"});
+    if (weakly_compressible()) limits.push_back({acoustic_step(speed), "acoustic"});
     if (scene_.terms.surface_tension) {
       const double sigma = constants_.material.sigma(constants_.melting_temperature());
       limits.push_back({time.cfl_capillary * std::sqrt(rho * h * h * h / (2 * M_PI * sigma)), "capillary"});

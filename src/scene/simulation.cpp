@@ -16,8 +16,8 @@ constexpr int kExchangesPerBuild = 10;
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
-/// Partitions of "auto" terms are reconsidered every so many steps.
-constexpr std::int64_t kPartitionSteps = 10;
+/// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
+constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
 
 }  // namespace
 
@@ -50,9 +50,13 @@ Vec3 Simulation::Impl::liquid_momentum() const {
 void Simulation::Impl::select() {
   const auto timer = timers.measure(Part::neighbours);
   const bool everything = scene.heat.bulk_interval <= 0;
-  if (lists_valid && everything && list_motion < 0.5 * skin(scene) * constants.spacing) {
+  if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     reload(particles, model.patch);
+    if (model.weakly_compressible()) {  // nothing melted: the stage stands as well
+      model.invalidate();
+      return;
+    }
   } else {
     if (everything)
       selector.select_all(particles, model.patch);
@@ -73,6 +77,7 @@ void Simulation::Impl::select() {
     model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, extra);
     ++counters.list_builds;
     lists_valid = true;
+    deposited = false;
     list_motion = 0;
   }
   const Index n = model.patch.size();
@@ -96,16 +101,19 @@ StepInfo Simulation::Impl::step(double t_stop) {
   begin();
   if (laser && laser->due(time)) {
     const auto timer = timers.measure(Part::laser);
-    const bool first = laser->lit().empty();
+    const bool everything = scene.heat.bulk_interval <= 0, first = laser->lit().empty();
+    const std::vector<Index> lit = everything ? std::vector<Index>() : laser->lit();
     laser->trace(time, selector, particles);
-    lists_valid = lists_valid && !first;
+    deposited = false;
+    lists_valid = lists_valid && !first && (everything || lit == laser->lit());
   }
   select();
   model.pack(y, fields);
   model.evaluate(time, y.data());
-  if (laser) {
+  if (laser && !(deposited && model.weakly_compressible())) {
     const auto timer = timers.measure(Part::laser);
     laser->deposit(model.stage, model.laser_power);
+    deposited = true;
   }
   if (counters.steps % kPartitionSteps == 0) {
     double expected = integrator.proposed_step();
@@ -121,8 +129,10 @@ StepInfo Simulation::Impl::step(double t_stop) {
     const auto timer = timers.measure(Part::integrator);
     report = integrator.step(model, fields, time, t_stop, y);
   }
-  if (model.flows() && scene.flow.projection == Projection::step)
+  if (model.projects_steps())
     model.project(report.t, report.dt, y);
+  else if (model.weakly_compressible())
+    model.unpack(y.data());
   else
     model.evaluate(report.t, y.data());
   check(report);
@@ -146,6 +156,8 @@ StepInfo Simulation::Impl::step(double t_stop) {
     list_motion += motion;
     if (laser) laser->add_motion(motion);
   }
+  if (model.weakly_compressible() && counters.steps % kDensitySteps == 0)
+    largest_density_variation = std::max(largest_density_variation, density_variation());
   ++counters.limiter[std::string(report.limiter)];
   return {time, report.dt, std::string(report.limiter)};
 }
@@ -244,6 +256,7 @@ void Simulation::Impl::change_phases(double) {
       selector.melted(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::liquid);
       particles.flags[g] |= kWasLiquid;
+      if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
       lists_valid = lists_valid && !model.flows();
     } else if (model.patch.liquid[i] && h <= solidus) {
       bool touches = !model.flows();
@@ -260,6 +273,7 @@ void Simulation::Impl::change_phases(double) {
       selector.solidified(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::solid);
       particles.flags[g] |= kResolidified;
+      if (model.weakly_compressible()) particles.density[g] = constants.density;
       lists_valid = lists_valid && !model.flows();
     }
   }

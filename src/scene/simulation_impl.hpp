@@ -13,11 +13,17 @@
 namespace meltray::scene {
 
 /// Share of the spacing by which lists reach beyond the support: where lists are kept while particles move,
-/// and where they are built anew for every step (only what enters the edge of the support during a step is
-/// missed).
-inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05;
+/// where they are built anew for every step (only what enters the edge of the support during a step is
+/// missed), and where a patch follows the melt in steps at the speed of sound, many of which a list outlasts.
+inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05, kSkinOfSound = 0.5;
+inline bool follows_melt(const Scene& scene) {
+  return scene.heat.bulk_interval > 0;
+}
+inline bool keeps_lists(const Scene& scene) {
+  return !follows_melt(scene) || (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph);
+}
 inline double skin(const Scene& scene) {
-  return scene.heat.bulk_interval > 0 ? kSkinOfStep : kSkin;
+  return !follows_melt(scene) ? kSkin : keeps_lists(scene) ? kSkinOfSound : kSkinOfStep;
 }
 
 /// State of a simulation; its steps are in simulation.cpp, what it reports and saves in
@@ -50,6 +56,7 @@ struct Simulation::Impl {
   void remove_escaped();
   void exchange_bulk(double until);
   double stored_energy() const;
+  double density_variation() const;
   Vec3 liquid_momentum() const;
 
   Scene scene;
@@ -63,7 +70,9 @@ struct Simulation::Impl {
   terms::BulkConduction bulk;
   std::int64_t bulk_exchanges = 0;
   double time = 0, next_bulk = 0, bulk_from = 0, last_dt = 0, evaporative_loss = 0;
+  double largest_density_variation = 0;
   bool begun = false, lists_valid = false;
+  bool deposited = false;  ///< the laser power of the present patch is known
   double list_motion = 0;
 
   std::vector<double> y;

@@ -94,6 +94,26 @@ Counters Simulation::counters() const {
   return c;
 }
 
+double Simulation::Impl::density_variation() const {
+  if (!model.weakly_compressible()) return 0;
+  constexpr double kShare = 0.99;
+  std::vector<double> variation;
+  for (Index i : selector.moving()) {
+    if (particles.has(i, kRemoved)) continue;
+    const double rest = scene.flow.thermal_expansion ? scene.material.density_of_t(particles.temperature[i])
+                                                     : constants.density;
+    variation.push_back(std::abs(particles.density[i] / rest - 1));
+  }
+  if (variation.empty()) return 0;
+  const auto at = variation.begin() + static_cast<std::ptrdiff_t>(kShare * (variation.size() - 1));
+  std::nth_element(variation.begin(), at, variation.end());
+  return *at;
+}
+
+DensityVariation Simulation::density_variation() const {
+  return {impl_->density_variation(), impl_->largest_density_variation};
+}
+
 std::size_t Simulation::liquid_count() const {
   std::size_t n = 0;
   for (Index i : impl_->selector.moving()) n += !impl_->particles.has(i, kRemoved);
@@ -126,6 +146,7 @@ void Simulation::archive(Archive& a) {
   a.value("bulk_from", s.bulk_from);
   a.value("last_dt", s.last_dt);
   a.value("evaporative_loss", s.evaporative_loss);
+  if (s.model.weakly_compressible()) a.value("largest_density_variation", s.largest_density_variation);
   a.value("largest_acceleration", s.model.largest_acceleration);
   for (auto [name, item] : {std::pair{"initial", &s.energy.initial},
                             {"laser", &s.energy.laser},
@@ -182,7 +203,7 @@ void Simulation::archive(Archive& a) {
 
   // From here on a run that goes on and one that is resumed are in the same state: everything derived is
   // rebuilt.
-  s.lists_valid = false;
+  s.lists_valid = s.deposited = false;
   s.bulk_exchanges = 0;
   s.model.invalidate();
   if (!a.loading()) {
@@ -214,13 +235,19 @@ std::vector<TermInfo> Simulation::terms() const {
   const auto info = [](const char* name, bool active, std::string where) {
     return TermInfo{name, active, active ? std::move(where) : "skipped: not in this scene"};
   };
-  const std::string projected =
-      s.flow.projection == Projection::step ? "projected once a step" : "projected in every stage";
+  const std::string projected = impl_->model.weakly_compressible()      ? "explicit"
+                                : s.flow.projection == Projection::step ? "projected once a step"
+                                                                        : "projected in every stage";
   return {info("conduction", s.terms.conduction, side(p.conduction, s.time.conduction)),
           info("viscosity", s.terms.viscosity, side(p.viscosity, s.time.viscosity)),
           info("interface_viscosity", s.terms.interface_viscosity,
                side(p.interface_viscosity, s.time.interface_viscosity)),
           info("pressure", s.terms.pressure, projected),
+          info("density_diffusion",
+               impl_->model.weakly_compressible() && s.flow.density_diffusion != DensityDiffusion::none,
+               "explicit"),
+          info("artificial_viscosity", s.terms.artificial_viscosity, "explicit"),
+          info("thermal_expansion", s.flow.thermal_expansion, "explicit"),
           info("surface_tension", s.terms.surface_tension, projected),
           info("wetting", s.terms.wetting, projected),
           info("marangoni", s.terms.marangoni, "explicit"),

@@ -165,6 +165,14 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
 }
 
 void PairList::refresh(const Patch& patch, KernelType kernel) {
+  refresh_with(patch, kernel, nullptr);
+}
+
+void PairList::refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows) {
+  refresh_with(patch, kernel, &rows);
+}
+
+void PairList::refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some) {
   for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs());
   w_.resize(pairs());
   f_.resize(pairs());
@@ -172,15 +180,15 @@ void PairList::refresh(const Patch& patch, KernelType kernel) {
   with_dim(dim_, [&](auto d) {
     with_kernel<d>(kernel, [&](auto k) {
       if (periodic)
-        refresh_rows<d, decltype(k), true>(patch);
+        refresh_rows<d, decltype(k), true>(patch, some);
       else
-        refresh_rows<d, decltype(k), false>(patch);
+        refresh_rows<d, decltype(k), false>(patch, some);
     });
   });
 }
 
 template <int D, class Kernel, bool Periodic>
-void PairList::refresh_rows(const Patch& patch) {
+void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) {
   std::array<double, 3> inverse_period{};
   for (int c = 0; c < D; ++c) inverse_period[c] = period_[c] > 0 ? 1 / period_[c] : 0;
 
@@ -190,7 +198,7 @@ void PairList::refresh_rows(const Patch& patch) {
   double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
   double *const w = w_.data(), *const f = f_.data();
   const auto period = period_;
-  parallel_for(rows(), [&](Index i) {
+  const auto refresh_row = [&](Index i) {
     const double hi = h[i];
     double xi[D];
     for (int c = 0; c < D; ++c) xi[c] = x[c][i];
@@ -208,7 +216,12 @@ void PairList::refresh_rows(const Patch& patch) {
       w[k] = Kernel::w(r, inv_h);
       f[k] = Kernel::f(r, inv_h);
     }
-  });
+  };
+  if (some)
+    parallel_for(static_cast<std::ptrdiff_t>(some->size()),
+                 [&](std::ptrdiff_t n) { refresh_row((*some)[n]); });
+  else
+    parallel_for(rows(), refresh_row);
 }
 
 std::size_t PairList::bytes() const {

@@ -12,7 +12,7 @@
 
 namespace meltray::observe {
 
-inline constexpr int kHistorySchema = 1;
+inline constexpr int kHistorySchema = 2;
 
 /// Steps since the last row of history.csv; part of a checkpoint, so that a resumed run writes the same next
 /// row.
@@ -38,9 +38,10 @@ struct HistoryRow {
   double max_temperature = 0, max_speed = 0;
   std::size_t liquid = 0, active = 0;
   double ejected_mass = 0, evaporative_loss = 0;
-  double dt = 0;           ///< mean since the row before [s]
-  std::string limiter;     ///< what set most steps since the row before
-  std::int64_t steps = 0;  ///< since t = 0
+  double density_variation = 0;  ///< of a weakly compressible melt, relative
+  double dt = 0;                 ///< mean since the row before [s]
+  std::string limiter;           ///< what set most steps since the row before
+  std::int64_t steps = 0;        ///< since t = 0
   scene::EnergyBudget energy;
   double energy_error = 0;  ///< relative
 };

@@ -25,6 +25,7 @@ struct Particles {
   Components x;                     ///< position [m]
   Components v;                     ///< velocity [m/s]
   std::vector<double> h;            ///< specific enthalpy [J/kg]
+  std::vector<double> density;      ///< [kg/m^3]; weakly compressible scenes only, else empty
   std::vector<double> mass;         ///< [kg] (per metre of depth in 2-D)
   std::vector<double> smoothing;    ///< smoothing length [m]; support radius is twice this
   std::vector<double> pressure;     ///< last pressure [Pa]; warm start of the Poisson solver

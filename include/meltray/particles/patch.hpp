@@ -18,6 +18,7 @@ struct Patch {
   std::vector<Index> cell_start;  ///< first patch index of each grid cell (cells() + 1 entries)
   Components x, v;
   std::vector<double> h, mass, smoothing, pressure;
+  std::vector<double> density;       ///< empty where the store has none
   std::vector<std::uint8_t> liquid;  ///< 1 = liquid
   std::vector<std::uint8_t> wall;    ///< 0, or 1 + index of the box face a dummy belongs to
 

@@ -19,10 +19,16 @@ enum class KernelChoice { wendland_c2, cubic_spline };
 enum class Arrangement { lattice, jittered, rotated };
 enum class FaceKind { free, wall, periodic };
 enum class ThermalKind { adiabatic, temperature, flux };
+enum class FlowSolver { isph, wcsph };
+enum class SolidModel { fixed, elastic };
+enum class PressureGradient { sum, difference };
+enum class Tension { full, none, artificial_stress };
+enum class DensityDiffusion { none, molteni_colagrossi, antuono };
 enum class Projection { step, stage };
 enum class SurfaceEntry { csf, pressure };
 enum class RecoilOnset { smooth, cutoff, ambient };
 enum class PartitionChoice { automatic, explicit_, implicit_ };
+enum class Optics { by_phase, solid, hot_melt };
 enum class VelocityField { none, taylor_green, rotation };
 enum class ShapeKind { box, ball };
 
@@ -67,12 +73,22 @@ struct Domain {
 /// [terms]: which effects exist in the scene.
 struct Terms {
   bool conduction = false, viscosity = false, interface_viscosity = false, pressure = false;
+  bool artificial_viscosity = false;
   bool surface_tension = false, marangoni = false, wetting = false, recoil = false;
   bool evaporation = false, radiation = false, buoyancy = false, gravity = false, melting = false;
 };
 
-/// [flow]: pressure projection, shifting, viscosities.
+/// [flow]: pressure, shifting, viscosities.
 struct Flow {
+  FlowSolver solver = FlowSolver::isph;
+  SolidModel solid = SolidModel::fixed;
+  double sound_speed = 0;          ///< numerical, of the equation of state [m/s]
+  bool thermal_expansion = false;  ///< reference density follows the temperature
+  PressureGradient pressure_gradient = PressureGradient::difference;
+  Tension tension = Tension::artificial_stress;
+  DensityDiffusion density_diffusion = DensityDiffusion::antuono;
+  double diffusion_coefficient = 0.1;  ///< delta of the density diffusion
+  double artificial_viscosity = 1;     ///< alpha of Monaghan's viscosity
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
@@ -109,8 +125,9 @@ struct Heat {
 struct Laser {
   laser::BeamSpec beam;
   laser::TraceOptions trace;
-  double retrace_interval = 5e-6;  ///< [s]
-  double retrace_motion = 0.5;     ///< retrace when a surface particle moved by this fraction of the spacing
+  Optics optics = Optics::by_phase;  ///< which refractive index the metal has
+  double retrace_interval = 5e-6;    ///< [s]
+  double retrace_motion = 0.5;  ///< retrace when a surface particle moved by this fraction of the spacing
 };
 
 /// [time] and [splitting].
@@ -120,7 +137,9 @@ struct Time {
   double rtol = 1e-3;
   double atol_position = 0.05;  ///< fraction of the spacing
   double atol_velocity = 0.1;   ///< [m/s]
+  double atol_density = 5e-3;   ///< fraction of the density
   double atol_temperature = 5;  ///< [K], turned into enthalpy with the solid's heat capacity
+  double cfl_acoustic = 0.25;
   double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_force = 0.25;
   double cfl_viscous = 0.8,
          cfl_thermal = 0.8;   ///< shares of the Gershgorin stability bound of explicit terms

@@ -60,6 +60,14 @@ struct Counters {
   std::map<std::string, std::int64_t> limiter;  ///< steps by what set their length
 };
 
+/// How far the density of a weakly compressible melt is from rho_0(T): 99 of 100 liquid particles are nearer
+/// than this share of it. Zero in incompressible scenes.
+struct DensityVariation {
+  double now = 0;
+  double largest = 0;                       ///< since t = 0, looked at every ten steps
+  static constexpr double kAllowed = 0.03;  ///< beyond it the flow is no longer nearly incompressible
+};
+
 /// What the laser did at the last trace [W].
 struct LaserState {
   double power = 0, absorbed = 0, escaped = 0, residual = 0;
@@ -104,6 +112,7 @@ class Simulation {
   const laser::Tracer* tracer() const;
   const laser::Beam* beam() const;
   Counters counters() const;
+  DensityVariation density_variation() const;
   Timers& timers();
   double evaporative_loss() const;  ///< [W] at the last step
   std::size_t liquid_count() const;

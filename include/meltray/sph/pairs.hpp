@@ -45,6 +45,8 @@ class PairList {
   /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours
   /// only.
   void refresh(const Patch& patch, KernelType kernel);
+  /// The same for some rows only; the others keep the geometry that they have.
+  void refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows);
 
   Index rows() const { return static_cast<Index>(start_.size()) - 1; }
   Index begin(Index i) const { return start_[i]; }
@@ -136,8 +138,9 @@ class PairList {
   void gather_candidates(const Patch& patch, const CellGrid& grid, Index cell, Block& block) const;
   template <int D>
   void search_row(const Patch& patch, Index i, Index origin, double skin, Block& block) const;
+  void refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some);
   template <int D, class Kernel, bool Periodic>
-  void refresh_rows(const Patch& patch);
+  void refresh_rows(const Patch& patch, const std::vector<Index>* some);
   void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
 
   int dim_ = 3;

@@ -51,6 +51,8 @@ struct Stage {
   std::vector<Index> moving;        ///< patch indices of liquid particles, ascending
   std::vector<Index> heated;        ///< patch indices with heat = 1, ascending
 
+  std::vector<double> excess;  ///< rho - rho_0(T) of a weakly compressible scene [kg/m^3]; else empty
+
   // Free surface (filled by compute_surface when a term needs it; zero elsewhere).
   std::vector<double> fill;              ///< Shepard sum over that of a full lattice
   std::vector<double> diagonal;          ///< Laplacian sum over that of a full lattice

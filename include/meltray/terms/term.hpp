@@ -13,6 +13,7 @@ namespace meltray::terms {
 struct Rates {
   MutField acceleration{};    ///< [m/s^2]
   double* heating = nullptr;  ///< dh/dt [W/kg]
+  double* density = nullptr;  ///< d rho/dt [kg/(m^3 s)]
 };
 
 /// What crosses the boundary of the system or changes the melt's momentum, integrated as part of the state so

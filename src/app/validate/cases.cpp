@@ -33,6 +33,10 @@ const std::vector<ValidationCase>& validation_cases() {
        natural_convection},
       {2, "gallium_melting", "melting from a hot wall with convection: liquid share and front over time",
        gallium_melting},
+      {2, "hydrostatic", "tank at rest: pressure, speed and density, both solvers, both density diffusions",
+       hydrostatic},
+      {2, "dam_break_martin_moyce", "collapse of a column: front over time, both solvers",
+       dam_break_martin_moyce},
   };
   return cases;
 }

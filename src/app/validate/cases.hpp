@@ -43,5 +43,7 @@ Rows marangoni_cavity(const Setting& setting);
 Rows natural_convection(const Setting& setting);
 Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
+Rows hydrostatic(const Setting& setting);
+Rows dam_break_martin_moyce(const Setting& setting);
 
 }  // namespace meltray::app

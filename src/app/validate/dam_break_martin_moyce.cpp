@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/validate/scenes.hpp"
+#include "app/validate/table.hpp"
+
+namespace meltray::app {
+namespace {
+
+struct Trace {
+  std::vector<double> time, front;  ///< t* = t sqrt(n^2 g / a), x* = x / a
+  double seconds = 0;
+};
+
+/// Position of the front along the floor: half a spacing before the foremost particle that is not loose
+/// spray.
+double front_of(const Particles& p, double spacing) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p.is_liquid(i) && !p.has(i, kRemoved) && p.x[1][i] < 4 * spacing) x.push_back(p.x[0][i]);
+  std::sort(x.begin(), x.end());
+  // Spray: gaps wider than the support ahead of the body of the melt.
+  std::size_t last = x.size() - 1;
+  while (last > 0 && x[last] - x[last - 1] > 2 * spacing) --last;
+  return x[last] + 0.5 * spacing;
+}
+
+Trace run(const Setting& setting, const scene::Overrides& overrides, double spacing) {
+  const Watch watch;
+  scene::Overrides all = overrides;
+  all.push_back(fmt::format("domain.spacing_m={}", spacing));
+  const auto simulation = start(setting, all);
+  Trace trace;
+  const double end = simulation->scene().time.end;
+  advance(*simulation, end, [&] {
+    trace.time.push_back(simulation->time() * std::sqrt(2.0));
+    trace.front.push_back(front_of(simulation->particles(), spacing));
+  });
+  trace.seconds = watch.seconds();
+  return trace;
+}
+
+/// Front at a time, between the steps; NaN after the end.
+double at(const Trace& trace, double time) {
+  for (std::size_t k = 1; k < trace.time.size(); ++k) {
+    if (trace.time[k] < time) continue;
+    const double share = (time - trace.time[k - 1]) / (trace.time[k] - trace.time[k - 1]);
+    return trace.front[k - 1] + share * (trace.front[k] - trace.front[k - 1]);
+  }
+  return std::nan("");
+}
+
+/// Slope of the straight line through the measured points between two times.
+double measured_speed(const Table& reference, double from, double until) {
+  double n = 0, t = 0, x = 0, tt = 0, tx = 0;
+  for (std::size_t k = 0; k < reference.rows(); ++k) {
+    const double time = reference.number(k, "time"), front = reference.number(k, "front");
+    if (time < from || time > until) continue;
+    ++n;
+    t += time;
+    x += front;
+    tt += time * time;
+    tx += time * front;
+  }
+  return (n * tx - t * x) / (n * tt - t * t);
+}
+
+}  // namespace
+
+Rows dam_break_martin_moyce(const Setting& setting) {
+  const Table reference(setting.folder / "reference.csv");
+  struct Model {
+    const char* name;
+    scene::Overrides overrides;
+  };
+  const std::vector<Model> models = {
+      {"wcsph", {}}, {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
+  const double spacing = setting.small ? 0.05 : 0.025;
+  const double end = setting.small ? 1.7 : 3.4;  // of the points that count, in t*
+  Rows rows;
+  for (const Model& m : models) {
+    scene::Overrides overrides = m.overrides;
+    overrides.push_back(fmt::format("time.end_s={}", end / std::sqrt(2.0) + 0.05));
+    const Trace trace = run(setting, overrides, spacing);
+    const Measured how{resolution_text(spacing), trace.seconds, reference.source()};
+    double sum = 0;
+    int points = 0;
+    for (std::size_t k = 0; k < reference.rows(); ++k) {
+      const double time = reference.number(k, "time"), measured = reference.number(k, "front");
+      if (time > end) continue;
+      const double front = at(trace, time);
+      Row row = relative_row(
+          fmt::format("{}: x* at t* = {:.3f} (a = {} in)", m.name, time, reference.text(k, "column_in")),
+          front, measured, 0.05, how);
+      row.judged = false;
+      rows.push_back(row);
+      sum += std::abs(front / measured - 1);
+      ++points;
+    }
+    rows.push_back(limit_row(std::string(m.name) + ": mean deviation of x*", sum / points, 0.05, how));
+    rows.back().judged = !setting.small;
+    const double from = 1.2, until = setting.small ? 1.65 : 3.0;
+    rows.push_back(relative_row(std::string(m.name) + ": mean speed of the front",
+                                (at(trace, until) - at(trace, from)) / (until - from),
+                                measured_speed(reference, from, until), setting.small ? 0.15 : 0.05, how));
+  }
+  return rows;
+}
+
+}  // namespace meltray::app
