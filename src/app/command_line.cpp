@@ -117,6 +117,28 @@ class CommandLine {
         "Scene of the studies, or a case file")
         ->add_option("--parameter", study_.parameter,
                      "What is varied [default: the first that the scene has]");
+    add_paper(c);
+  }
+
+  void add_paper(CLI::App* study_command) {
+    auto* c =
+        study_command->add_subcommand("paper", "The paper's welds: runs what is missing, table and figures");
+    c->add_option("--metals", paper_.metals, "iron, aluminium")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"iron", "aluminium"}));
+    c->add_option("--frequencies", paper_.frequencies, "100, 250, 500 [Hz]")
+        ->delimiter(',')
+        ->check(CLI::IsMember({100, 250, 500}));
+    c->add_option("--models", paper_.models, "Rows of Table 1")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"isph", "wcsph", "wcsph_reduced", "wcsph_reduced_interface"}));
+    c->add_option("--seeds", paper_.seeds, "1: the lattice; n: n disturbed lattices")
+        ->check(CLI::PositiveNumber);
+    c->add_option("--until", paper_.until, "End of every run [s]")->check(CLI::PositiveNumber);
+    c->add_option("--out", paper_.out, "Folder of runs and results [default: runs/paper]");
+    c->add_flag("--list", paper_.list, "Only print the commands that are still to run, for a batch system");
+    c->add_option("--threads", paper_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->callback([this] { command_ = [this] { return study_paper(paper_); }; });
   }
 
   void add_plot() {
@@ -152,6 +174,7 @@ class CommandLine {
   ResumeArguments resume_;
   ValidateArguments validate_;
   StudyArguments study_;
+  PaperArguments paper_;
   std::vector<std::filesystem::path> folders_;
   std::filesystem::path measured_;
   std::string what_;

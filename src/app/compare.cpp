@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "app/measurements.hpp"
+#include "app/response.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
-#include "meltray/observe/harmonics.hpp"
 #include "meltray/observe/history.hpp"
 #include "meltray/observe/run_folder.hpp"
 #include "meltray/scene/case_file.hpp"
@@ -20,10 +20,7 @@ constexpr const char* kRow = "{:<28} {:<10} {:>7} {:<14} {:>14} {:>16} {:>9} {:>
 struct Simulated {
   std::string run, material;
   double frequency = 0;
-  int periods = 0;
-  double half_range_ratio = 0, half_range_spread = 0, harmonic_ratio = 0;  ///< [mm/kW]
-  double mean_depth = 0;                                                   ///< [mm]
-  double lag = 0;                                                          ///< [deg]
+  DepthResponse depth;
 };
 
 Simulated analyse(const fs::path& folder) {
@@ -36,21 +33,8 @@ Simulated analyse(const fs::path& folder) {
   const auto table = observe::read_history(folder / "history.csv");
   const double f = scene.laser->beam.frequency;
   try {
-    const auto& t = table.at("time_s");
-    const auto power = observe::analyse_periods(t, table.at("laser_power_w"), f);
-    const auto depth = observe::analyse_periods(t, table.at("capillary_depth_m"), f);
-    // The amplitude of the drive is taken in the same way as that of the response. m/W is 1e6 mm/kW.
-    Simulated s;
-    s.run = folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
-    s.material = scene.material.name;
-    s.frequency = f;
-    s.periods = depth.periods;
-    s.half_range_ratio = 1e6 * depth.half_range / power.half_range;
-    s.half_range_spread = 1e6 * depth.half_range_spread / power.half_range;
-    s.harmonic_ratio = 1e6 * depth.harmonic / power.harmonic;
-    s.mean_depth = 1e3 * depth.mean;
-    s.lag = observe::phase_lag_deg(power, depth);
-    return s;
+    return {folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string(),
+            scene.material.name, f, depth_response(table, "capillary_depth_m", f)};
   } catch (const UsageError& e) {
     throw UsageError(fmt::format("{}: {}", (folder / "history.csv").string(), e.what()));
   }
@@ -62,9 +46,10 @@ std::string text(const std::optional<double>& v, const char* format = "{:.3f}") 
 
 void print_simulated(const Simulated& s) {
   fmt::print(kRow, s.run, s.material, fmt::format("{:.4g}", s.frequency), "simulated",
-             fmt::format("{:.3f} ± {:.3f}", s.half_range_ratio, s.half_range_spread),
-             fmt::format("{:.3f}", s.harmonic_ratio), fmt::format("{:.3f}", s.mean_depth),
-             fmt::format("{:.1f}", s.lag), fmt::format("{} period{}", s.periods, s.periods == 1 ? "" : "s"));
+             fmt::format("{:.3f} ± {:.3f}", s.depth.half_range_ratio, s.depth.half_range_spread),
+             fmt::format("{:.3f}", s.depth.harmonic_ratio), fmt::format("{:.3f}", s.depth.mean),
+             fmt::format("{:.1f}", s.depth.lag),
+             fmt::format("{} period{}", s.depth.periods, s.depth.periods == 1 ? "" : "s"));
 }
 
 void print_measured(const Simulated& s, const Measurement& m) {
@@ -75,13 +60,13 @@ void print_measured(const Simulated& s, const Measurement& m) {
   fmt::print(kRow, "", m.material, fmt::format("{:.4g}", m.frequency), "measured", harmonic ? "" : ratio,
              harmonic ? ratio : "", text(m.mean_depth_mm), text(m.phase_lag_deg, "{:.1f}"),
              m.definition.empty() ? m.source : m.definition + "; " + m.source);
-  const double own = harmonic ? s.harmonic_ratio : s.half_range_ratio;
+  const double own = harmonic ? s.depth.harmonic_ratio : s.depth.half_range_ratio;
   const auto quotient =
       m.ratio_mm_per_kw && *m.ratio_mm_per_kw > 0 ? std::optional(own / *m.ratio_mm_per_kw) : std::nullopt;
   const auto depths =
-      m.mean_depth_mm && *m.mean_depth_mm > 0 ? std::optional(s.mean_depth / *m.mean_depth_mm) : std::nullopt;
+      m.mean_depth_mm && *m.mean_depth_mm > 0 ? std::optional(s.depth.mean / *m.mean_depth_mm) : std::nullopt;
   const auto lag =
-      m.phase_lag_deg ? std::optional(std::remainder(s.lag - *m.phase_lag_deg, 360.0)) : std::nullopt;
+      m.phase_lag_deg ? std::optional(std::remainder(s.depth.lag - *m.phase_lag_deg, 360.0)) : std::nullopt;
   fmt::print(kRow, "", "", "", "sim/measured", harmonic ? "" : text(quotient), harmonic ? text(quotient) : "",
              text(depths), lag ? fmt::format("{:+.1f}", *lag) : "-", lag ? "(lag: difference)" : "");
 }

@@ -2,7 +2,9 @@
 #include "meltray/observe/capillary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "meltray/core/constants.hpp"
@@ -14,6 +16,7 @@ namespace {
 constexpr double kVoxel = 0.5;    // spacings
 constexpr double kSupport = 1.5;  // spacings
 constexpr float kThreshold = 0.5F;
+constexpr std::int64_t kSlab = 8;  // layers of voxels that are filled together
 
 /// Metal as a smoothed volume fraction on a regular grid, with a mark on what is anchored by solid.
 class VoxelGrid {
@@ -33,8 +36,7 @@ class VoxelGrid {
     const double radius = kSupport * spacing;
     const double scale = flat_ ? spacing * spacing / (constants::pi * radius * radius / 6)
                                : std::pow(spacing, 3) / (2 * constants::pi * std::pow(radius, 3) / 15);
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (!p.has(i, kRemoved)) spread(position(p, i), radius, static_cast<float>(scale), !p.is_liquid(i));
+    spread(p, radius, static_cast<float>(scale));
   }
 
   double depth() {
@@ -68,26 +70,62 @@ class VoxelGrid {
     return u >= 0 ? fraction_[u] : 0;
   }
 
-  void spread(const Vec3& x, double radius, float scale, bool solid) {
-    std::int64_t lo[3], hi[3];
-    for (int d = 0; d < 3; ++d) {
-      lo[d] = std::max<std::int64_t>(
-          0, static_cast<std::int64_t>(std::ceil((x[d] - radius - origin_[d]) / voxel_ - 0.5)));
-      hi[d] = std::min<std::int64_t>(
-          n_[d] - 1, static_cast<std::int64_t>(std::floor((x[d] + radius - origin_[d]) / voxel_ - 0.5)));
-      if (lo[d] > hi[d]) return;
+  /// First and last voxel along axis d whose centre lies within `radius` of x; empty where first > last.
+  std::pair<std::int64_t, std::int64_t> reach(int d, double x, double radius) const {
+    const double at = (x - origin_[d]) / voxel_ - 0.5, cells = radius / voxel_;
+    return {std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(at - cells))),
+            std::min<std::int64_t>(n_[d] - 1, static_cast<std::int64_t>(std::floor(at + cells)))};
+  }
+
+  /// Adds every particle to the voxels around it. Slabs of voxels are filled side by side, each by its
+  /// particles in ascending order, so that the sums do not depend on the number of threads.
+  void spread(const Particles& p, double radius, float scale) {
+    const std::int64_t slabs = (n_[2] + kSlab - 1) / kSlab;
+    std::vector<std::vector<Index>> of_slab(slabs);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (p.has(i, kRemoved)) continue;
+      const Vec3 x = position(p, i);
+      bool outside = false;
+      for (int d = 0; d < 2; ++d)
+        outside = outside || x[d] < origin_[d] - radius || x[d] > origin_[d] + n_[d] * voxel_ + radius;
+      if (outside) continue;
+      const auto [first, last] = reach(2, x[2], radius);
+      for (std::int64_t s = first / kSlab; first <= last && s <= last / kSlab; ++s)
+        of_slab[s].push_back(static_cast<Index>(i));
     }
-    for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
-      for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
-        for (std::int64_t i = lo[0]; i <= hi[0]; ++i) {
-          const Vec3 c = origin_ + voxel_ * Vec3(i + 0.5, j + 0.5, k + 0.5);
-          const double r2 = (c - x).squaredNorm();
-          if (r2 >= radius * radius) continue;
-          const auto q = static_cast<float>(1 - std::sqrt(r2) / radius);
-          const std::int64_t v = (k * n_[1] + j) * n_[0] + i;
-          fraction_[v] += scale * q * q;
-          if (solid) anchored_[v] = 1;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::int64_t s = 0; s < slabs; ++s)
+      for (const Index i : of_slab[s])
+        spread_one(position(p, i), radius, scale, !p.is_liquid(i), s * kSlab,
+                   std::min(n_[2], (s + 1) * kSlab) - 1);
+  }
+
+  /// Adds one particle to the voxels of layers bottom to top.
+  void spread_one(const Vec3& x, double radius, float scale, bool solid, std::int64_t bottom,
+                  std::int64_t top) {
+    const auto [i0, i1] = reach(0, x[0], radius);
+    const auto [j0, j1] = reach(1, x[1], radius);
+    auto [k0, k1] = reach(2, x[2], radius);
+    k0 = std::max(k0, bottom);
+    k1 = std::min(k1, top);
+    const auto offset2 = [&](int d, std::int64_t at) {
+      const double o = origin_[d] + (static_cast<double>(at) + 0.5) * voxel_ - x[d];
+      return static_cast<float>(o * o / (radius * radius));
+    };
+    std::array<float, 8> x2{};  // a support is 6 voxels wide
+    for (std::int64_t i = i0; i <= i1; ++i) x2[i - i0] = offset2(0, i);
+    for (std::int64_t k = k0; k <= k1; ++k)
+      for (std::int64_t j = j0; j <= j1; ++j) {
+        const float yz2 = offset2(2, k) + offset2(1, j);
+        const std::int64_t row = (k * n_[1] + j) * n_[0];
+        for (std::int64_t i = i0; i <= i1; ++i) {
+          const float r2 = yz2 + x2[i - i0];
+          if (r2 >= 1) continue;
+          const float q = 1 - std::sqrt(r2);
+          fraction_[row + i] += scale * q * q;
+          if (solid) anchored_[row + i] = 1;
         }
+      }
   }
 
   std::vector<std::int64_t> top_layer() const {

@@ -269,13 +269,19 @@ Vec3 Model::total_force() const {
   return sum;
 }
 
-void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
-  const auto timer = timers_.measure(Part::viscosity);
+/// The operator of one side, assembled for the present stage.
+terms::ViscousOperator& Model::viscous_operator(bool implicit_part) {
   auto& op = implicit_part ? viscous_implicit_ : viscous_explicit_;
   bool& valid = implicit_part ? implicit_viscous_valid_ : explicit_viscous_valid_;
   if (!valid) op.assemble(stage, viscous(implicit_part), interface_);
   valid = true;
-  op.add_acceleration(stage, view(static_cast<const Patch&>(patch).v), acceleration);
+  return op;
+}
+
+void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
+  const auto timer = timers_.measure(Part::viscosity);
+  viscous_operator(implicit_part)
+      .add_acceleration(stage, view(static_cast<const Patch&>(patch).v), acceleration);
 }
 
 void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
@@ -350,8 +356,6 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
   const int dim = constants_.dim;
   if (nm > 0 && viscous(true).any()) {
     const auto timer = timers_.measure(Part::viscosity);
-    if (!implicit_viscous_valid_) viscous_implicit_.assemble(stage, viscous(true), interface_);
-    implicit_viscous_valid_ = true;
     for (int c = 0; c < dim; ++c) {
       solve_b_[c].assign(stage.size(), 0.0);
       solve_x_[c].assign(stage.size(), 0.0);
@@ -359,8 +363,8 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
         solve_b_[c][stage.moving[k]] = solve_x_[c][stage.moving[k]] = b[(dim + c) * nm + k];
     }
     const int iterations =
-        viscous_implicit_.solve(stage, gamma, view(static_cast<const Components&>(solve_b_)), view(solve_x_),
-                                scene_.time.linear_tolerance, kLinearIterations);
+        viscous_operator(true).solve(stage, gamma, view(static_cast<const Components&>(solve_b_)),
+                                     view(solve_x_), scene_.time.linear_tolerance, kLinearIterations);
     if (iterations < 0) return false;
     counters->viscous_iterations += iterations;
     for (int c = 0; c < dim; ++c)

@@ -105,6 +105,7 @@ class Model : public OdeProblem {
   terms::Rates cleared_rates();
   void update_surface_pressure();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
+  terms::ViscousOperator& viscous_operator(bool implicit_part);
   void add_viscous(bool implicit_part, const MutField& acceleration);
   void add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
   Vec3 total_force() const;

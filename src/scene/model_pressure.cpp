@@ -148,9 +148,7 @@ std::vector<StepLimit> Model::step_limits() {
     if (largest_acceleration > 0)
       limits.push_back({time.cfl_force * std::sqrt(h / largest_acceleration), "force"});
     if (viscous(false).any()) {
-      if (!explicit_viscous_valid_) viscous_explicit_.assemble(stage, viscous(false), interface_);
-      explicit_viscous_valid_ = true;
-      const double rate = viscous_explicit_.rate(stage);
+      const double rate = viscous_operator(false).rate(stage);
       if (rate > 0) limits.push_back({time.cfl_viscous / rate, "viscous"});
     }
   }
@@ -198,16 +196,17 @@ void Model::choose_partitions(double dt) {
   if (scene_.terms.evaporation || scene_.terms.radiation)
     choose(time.evaporation, partitions.losses, [&] { return losses_.rate(stage); });
   if (!flows() || stage.moving.empty()) return;
-  terms::ViscousOperator probe;
-  const auto rate_of = [&](terms::ViscousChoice c) {
-    probe.assemble(stage, c, interface_);
-    return probe.rate(stage);
+  const Partitions before = partitions;
+  const auto rate_of = [&](bool implicit_part, terms::ViscousChoice part) {
+    return viscous_operator(implicit_part).rate(stage, part);
   };
   if (scene_.terms.viscosity)
-    choose(time.viscosity, partitions.viscosity, [&] { return rate_of({true, false}); });
+    choose(time.viscosity, partitions.viscosity, [&] { return rate_of(before.viscosity, {true, false}); });
   if (scene_.terms.interface_viscosity)
-    choose(time.interface_viscosity, partitions.interface_viscosity, [&] { return rate_of({false, true}); });
-  implicit_viscous_valid_ = explicit_viscous_valid_ = false;
+    choose(time.interface_viscosity, partitions.interface_viscosity, [&] {
+      return rate_of(before.interface_viscosity, {false, true});
+    });
+  if (partitions != before) implicit_viscous_valid_ = explicit_viscous_valid_ = false;
 }
 
 }  // namespace meltray::scene

@@ -24,10 +24,8 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
         const int wall = s.patch->wall[p.j];
         if (wall && !s.constants->faces[wall - 1].isothermal) return;
         const double vf = s.volume[p.j] * p.f;
-        for (int a = 0; a < D; ++a) {
-          gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];
-          for (int b = 0; b < D; ++b) moment(a, b) -= vf * p.x[a] * p.x[b];
-        }
+        for (int a = 0; a < D; ++a) gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];
+        sph::add_moment<D>(moment, vf, p);
       });
       gradient = sph::renormalisation<D>(moment) * gradient;
       Vector n;

@@ -164,11 +164,12 @@ void ViscousOperator::add_acceleration(const Stage& s, const ConstField& v,
   });
 }
 
-double ViscousOperator::rate(const Stage& s) const {
+double ViscousOperator::rate(const Stage& s, ViscousChoice part) const {
   // The interface part acts on one of D directions; its trace bounds the row.
+  const double physical = part.physical, interface = part.interface;
   return parallel_max(static_cast<std::ptrdiff_t>(s.moving.size()), 0.0, [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
-    return (c_sum_[i] + e2_sum_[i]) / s.patch->mass[i];
+    return (physical * c_sum_[i] + interface * e2_sum_[i]) / s.patch->mass[i];
   });
 }
 

@@ -30,7 +30,7 @@ struct ResumeArguments {
 
 struct ValidateArguments {
   std::vector<std::string> ids;
-  std::optional<int> tier;  ///< 1 analytic, 2 flow benchmarks
+  std::optional<int> tier;                        ///< 1 analytic, 2 flow benchmarks
   bool all = false, list = false, small = false;  ///< small: the seconds-long twins that ./dev test runs
   std::optional<std::filesystem::path> json;
 };
@@ -46,12 +46,26 @@ struct StudyArguments {
   int threads = 0;
 };
 
+/// The paper's matrix of welds, or a part of it.
+struct PaperArguments {
+  std::vector<std::string> metals{"iron", "aluminium"};
+  std::vector<int> frequencies{100, 250, 500};  ///< [Hz]
+  std::vector<std::string> models{"isph", "wcsph_reduced", "wcsph_reduced_interface"};
+  int seeds = 1;                ///< 1: the undisturbed lattice; n > 1: n disturbed ones
+  std::optional<double> until;  ///< [s]; default: the end of each case
+  std::filesystem::path out = "runs/paper";
+  bool list = false;  ///< print the commands that are still to run
+  int threads = 0;
+};
+
 int run(const RunArguments& arguments);
 int resume(const ResumeArguments& arguments);
 int check(const std::filesystem::path& case_file, const std::vector<std::string>& set);
 int list(const std::string& what);  ///< "", "cases", "materials", "terms", "methods" or "kernels"
 int validate(const ValidateArguments& arguments);
 int study(const StudyArguments& arguments);
+/// Runs what is not done yet; writes paper.csv, ratios.txt and the figures to `out`.
+int study_paper(const PaperArguments& arguments);
 int plot(const std::vector<std::filesystem::path>& run_folders);
 int compare(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& measured);
 

@@ -24,11 +24,6 @@ struct WendlandC2 {
     const double t = std::max(0.0, 1 - 0.5 * r * inv_h);
     return -5 * scale(inv_h) * inv_h * inv_h * t * t * t;
   }
-  /// F'/r, for the time derivative of a discrete divergence; zero at r = 0 is never asked for.
-  static double df(double r, double inv_h) {
-    const double t = std::max(0.0, 1 - 0.5 * r * inv_h);
-    return 7.5 * scale(inv_h) * inv_h * inv_h * inv_h * t * t / std::max(r, 1e-300);
-  }
 
  private:
   static double scale(double inv_h) {
@@ -50,11 +45,6 @@ struct CubicSpline {
     const double q = r * inv_h, a = std::max(0.0, 2 - q);
     const double outer = -0.5 * a * a / std::max(q, 1.0);
     return scale(inv_h) * inv_h * inv_h * (q < 1 ? -(2 - 1.5 * q) : outer);
-  }
-  static double df(double r, double inv_h) {
-    const double q = r * inv_h, a = std::max(0.0, 2 - q);
-    const double outer = a / std::max(q, 1.0) + 0.5 * a * a / std::max(q * q, 1.0);
-    return scale(inv_h) * inv_h * inv_h * inv_h * (q < 1 ? 1.5 : outer) / std::max(r, 1e-300);
   }
 
  private:

@@ -42,7 +42,9 @@ class ViscousOperator {
   int solve(const Stage& stage, double gamma, const ConstField& b, const MutField& x, double tolerance,
             int max_iterations) const;
   /// Largest row sum of -A [1/s]: an explicit step is stable below about 2 / rate.
-  double rate(const Stage& stage) const;
+  double rate(const Stage& stage) const { return rate(stage, choice_); }
+  /// The same of a part of what is assembled.
+  double rate(const Stage& stage, ViscousChoice part) const;
 
  private:
   template <int D, bool Physical, bool Interface>

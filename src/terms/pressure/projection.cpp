@@ -32,12 +32,13 @@ void Projection::assemble(const Stage& s) {
   matrix_.start.resize(rows + 1);
   ghost_.resize(rows);
   matrix_.start[0] = 0;
-  for (Index r = 0; r < rows; ++r) {
+  parallel_for(rows, [&](Index r) {
     const Index i = particle_of_[r];
     Index count = 0;
     for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += row_of_[pairs.neighbour(k)] >= 0;
-    matrix_.start[r + 1] = matrix_.start[r] + count;
-  }
+    matrix_.start[r + 1] = count;
+  });
+  for (Index r = 0; r < rows; ++r) matrix_.start[r + 1] += matrix_.start[r];
   matrix_.column.resize(matrix_.start[rows]);
   matrix_.off.resize(matrix_.start[rows]);
   const auto& lattice = s.constants->lattice;
@@ -112,10 +113,8 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
       s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
         const double vf = s.volume[p.j] * p.f;
         for (int a = 0; a < D; ++a)
-          for (int b = 0; b < D; ++b) {
-            gradient(a, b) += vf * (v[a][p.j] - v[a][i]) * p.x[b];
-            moment(a, b) -= vf * p.x[a] * p.x[b];
-          }
+          for (int b = 0; b < D; ++b) gradient(a, b) += vf * (v[a][p.j] - v[a][i]) * p.x[b];
+        sph::add_moment<D>(moment, vf, p);
       });
       gradient = gradient * sph::renormalisation<D>(moment);
       out[r] = -(gradient * gradient).trace();
@@ -194,11 +193,8 @@ void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutF
       for (int c = 0; c < D; ++c) gradient[c] = sum[c];
       if (entry == SurfaceEntry::pressure && s.surface[i] > 0) {
         Matrix moment = Matrix::Zero();
-        s.pairs->for_row<D>(i, [&](const sph::Pair<D>& q) {
-          const double vf = volume[q.j] * q.f;
-          for (int a = 0; a < D; ++a)
-            for (int b = 0; b < D; ++b) moment(a, b) -= vf * q.x[a] * q.x[b];
-        });
+        s.pairs->for_row<D>(i,
+                            [&](const sph::Pair<D>& q) { sph::add_moment<D>(moment, volume[q.j] * q.f, q); });
         gradient = sph::renormalisation<D>(moment) * gradient;
       } else {
         gradient *= plain;

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Figures 3 to 5 of the paper from the runs of `meltray study paper`.
+
+Usage: plot_paper.py FOLDER    (with paper.csv and a run folder for each of its rows)
+
+depth.png: capillary depth over time, a panel for each metal and frequency, a line for each model; period.png: depth
+and absorbed power averaged over the periods after the first; ratio.png: amplitude of the depth over that of the power
+against the frequency, by both definitions.
+"""
+
+import csv
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+plt.rcParams.update({"figure.dpi": 90, "font.size": 8, "axes.grid": True, "grid.alpha": 0.3})
+
+
+def history(folder):
+    with open(folder / "history.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(r[name]) for r in rows])
+            for name in ("time_s", "capillary_depth_m", "axis_depth_m", "absorbed_power_w", "laser_power_w")}
+
+
+def numbers(rows, name):
+    return [float(r[name]) if r[name] else np.nan for r in rows]
+
+
+def panels(keys):
+    figure, axes = plt.subplots(1, len(keys), figsize=(4 * len(keys), 3), squeeze=False, layout="constrained")
+    return figure, dict(zip(keys, axes[0]))
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder = Path(sys.argv[1])
+    with open(folder / "paper.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    if not rows:
+        sys.exit(f"{folder}/paper.csv: no run")
+    models = list(dict.fromkeys(r["model"] for r in rows))
+    colours = {m: f"C{k}" for k, m in enumerate(models)}
+    keys = sorted({(r["metal"], int(r["f_hz"])) for r in rows})
+    runs = {id(r): history(folder / f"{r['metal']}-{r['f_hz']}hz-{r['model']}-seed{r['seed']}") for r in rows}
+
+    figure, axes = panels(keys)
+    for r in rows:
+        h, ax = runs[id(r)], axes[(r["metal"], int(r["f_hz"]))]
+        ax.plot(1e3 * h["time_s"], 1e3 * h["capillary_depth_m"], color=colours[r["model"]], lw=1, label=r["model"])
+        ax.plot(1e3 * h["time_s"], 1e3 * h["axis_depth_m"], color=colours[r["model"]], lw=0.5, ls=":")
+    for (metal, f), ax in axes.items():
+        ax.set(title=f"{metal}, {f} Hz (dots: along the beam axis)", xlabel="time [ms]", ylabel="depth [mm]")
+        ax.legend()
+    figure.savefig(folder / "depth.png")
+
+    figure, axes = panels(keys)
+    for r in rows:
+        h, f = runs[id(r)], int(r["f_hz"])
+        phase = h["time_s"] * f
+        late = phase >= 1
+        if phase[-1] < 2:
+            continue
+        bins = np.linspace(0, 1, 26)
+        place = np.digitize(phase[late] % 1, bins) - 1
+        for name, scale, look in (("capillary_depth_m", 1e3, "-"), ("absorbed_power_w", 1e-3, "--")):
+            mean = [scale * h[name][late][place == k].mean() if (place == k).any() else np.nan for k in range(25)]
+            axes[(r["metal"], f)].plot((bins[1:] + bins[:-1]) / 2, mean, look, color=colours[r["model"]], lw=1,
+                                       label=r["model"] if look == "-" else None)
+    for (metal, f), ax in axes.items():
+        ax.set(title=f"{metal}, {f} Hz: depth [mm], dashed: absorbed power [kW]", xlabel="phase of the power")
+        if ax.lines:
+            ax.legend()
+    figure.savefig(folder / "period.png")
+
+    figure, ax = plt.subplots(figsize=(5, 3.5), layout="constrained")
+    for metal in sorted({r["metal"] for r in rows}):
+        for model in models:
+            some = sorted((r for r in rows if r["metal"] == metal and r["model"] == model and r["periods"] != "0"),
+                          key=lambda r: int(r["f_hz"]))
+            if not some:
+                continue
+            f = [int(r["f_hz"]) for r in some]
+            ax.errorbar(f, numbers(some, "half_range_mm_per_kw"), yerr=numbers(some, "half_range_95"), fmt="o-",
+                        color=colours[model], mfc="none" if metal == "aluminium" else None, capsize=2, lw=1, ms=4,
+                        label=f"{metal}, {model}: half range")
+            ax.plot(f, numbers(some, "harmonic_mm_per_kw"), "s--", color=colours[model], lw=1, ms=3,
+                    mfc="none" if metal == "aluminium" else None, label=f"{metal}, {model}: first harmonic")
+    ax.set(xlabel="frequency [Hz]", ylabel="amplitude of depth / power [mm/kW]", xscale="log", yscale="log")
+    if ax.has_data():
+        ax.legend(fontsize=6)
+    figure.savefig(folder / "ratio.png")
+    for name in ("depth.png", "period.png", "ratio.png"):
+        print(folder / name)
+
+
+if __name__ == "__main__":
+    main()
