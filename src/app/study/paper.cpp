@@ -118,7 +118,7 @@ struct Cost {
 
 std::string row_of(const Weld& w, const nlohmann::json& s) {
   std::string row =
-      fmt::format("{},{},{},{},{},{:.6g},{},{:.6g},{:.6g},{:.6g}", w.metal, w.frequency, w.model, w.seed,
+      fmt::format("{},{},{},{},{},{:.9g},{},{:.9g},{:.6g},{:.6g}", w.metal, w.frequency, w.model, w.seed,
                   s.value("outcome", "?"), s.value("time_s", 0.0), s.value("steps", 0),
                   s.value("time_s", 0.0) / std::max(1, s.value("steps", 0)), s.value("wall_seconds", 0.0),
                   s.value("wall_seconds_per_simulated_ms", 0.0));
