@@ -60,10 +60,10 @@ struct Key {
   std::string unit;  ///< empty: none
   std::string sentence;
   Range range = {};
-  std::vector<std::string> words = {};    ///< allowed words; for a number: words it takes as well
-  int entries = 0;                        ///< of a vector; 0: as many as the scene has dimensions
-  bool is_required = false;               ///< where all needs hold
-  bool is_alias = false;                  ///< another way to write part of another key: not in resolved cases
+  std::vector<std::string> words = {};  ///< allowed words; for a number: words it takes as well
+  int entries = 0;                      ///< of a vector; 0: as many as the scene has dimensions
+  bool is_required = false;             ///< where all needs hold
+  bool is_alias = false;                ///< another way to write part of another key: not in resolved cases
   std::vector<Need> needs = {};
   std::string default_text = {};  ///< of a default that depends on other keys
   std::function<Value(const Scene&, int)> get = {};

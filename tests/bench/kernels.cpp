@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pair loops, lists and solvers on a rotated, jittered block of liquid: lists that profit from an aligned lattice
-// would flatter themselves. The argument of each benchmark is the number of particles along an edge. "pairs" is
-// useful directed pairs a second; threads come from OMP_NUM_THREADS.
+// Pair loops, lists and solvers on a rotated, jittered block of liquid: lists that profit from an aligned
+// lattice would flatter themselves. The argument of each benchmark is the number of particles along an edge.
+// "pairs" is useful directed pairs a second; threads come from OMP_NUM_THREADS.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
@@ -51,8 +51,8 @@ Ball& ball(const benchmark::State& state) {
 
 void count(benchmark::State& state, const Ball& b) {
   state.counters["particles"] = static_cast<double>(b.patch.size());
-  state.counters["pairs"] = benchmark::Counter(static_cast<double>(b.pairs.pairs()),
-                                               benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["pairs"] =
+      benchmark::Counter(static_cast<double>(b.pairs.pairs()), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void list_build(benchmark::State& state) {

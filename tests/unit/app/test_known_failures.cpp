@@ -25,8 +25,12 @@ TEST_CASE("a known failure is marked by id and quantity, with a star for anythin
   observe::replace_file(t / "known.toml",
                         "[[failure]]\nid = \"drop\"\nquantity = \"speed\"\nreason = \"noise\"\n"
                         "[[failure]]\nid = \"wedge\"\nquantity = \"15 deg: *, fine\"\nreason = \"tip\"\n");
-  Rows rows = {row("drop", "speed", 2),         row("drop", "speed", 0.5),       row("drop", "pressure", 2),
-               row("wedge", "15 deg: iron, fine", 2), row("wedge", "45 deg: iron, fine", 2), row("plate", "speed", 2)};
+  Rows rows = {row("drop", "speed", 2),
+               row("drop", "speed", 0.5),
+               row("drop", "pressure", 2),
+               row("wedge", "15 deg: iron, fine", 2),
+               row("wedge", "45 deg: iron, fine", 2),
+               row("plate", "speed", 2)};
   KnownFailures(t / "known.toml").mark(rows);
   CHECK(rows[0].known_failure == "noise");
   CHECK_FALSE(rows[0].passed());

@@ -221,7 +221,8 @@ double taylor_green_error(double smoothing_ratio) {
 
 }  // namespace
 
-// The source is smoothed over the kernel, so a wider one costs accuracy; 2 % is the line for the weld's h = 1.3 dx.
+// The source is smoothed over the kernel, so a wider one costs accuracy; 2 % is the line for the weld's h
+// = 1.3 dx.
 TEST_CASE("projection: the stage source of a Taylor-Green vortex gives its pressure") {
   for (double ratio : {1.3, 1.5, 2.0}) {
     CAPTURE(ratio);

@@ -79,8 +79,8 @@ TEST_CASE("surface tension: exact on a surface whose normals are those of a sphe
     for (Index i = 0; i < s.patch.size(); ++i)
       if (s.stage.surface[i] == 1)
         worst = std::max(worst, std::abs(p[i] * s.position(i).norm() / kSigma / 2 - 1));
-    // Neighbours sit at radii that differ by up to the support of 2.6 dx, half of it counts; smoothing the normals
-    // adds a quarter of the square of support over radius.
+    // Neighbours sit at radii that differ by up to the support of 2.6 dx, half of it counts; smoothing the
+    // normals adds a quarter of the square of support over radius.
     CAPTURE(cells, worst);
     CHECK(worst < 1.3 / cells + 1.69 / (cells * cells));
   }
