@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "meltray/app/command_line.hpp"
 
@@ -12,8 +13,10 @@ namespace {
 /// before main(), so the program starts itself once more with them; a setting of the user's stands.
 void start_with_short_spinning(char** argv) {
   if (std::getenv("GOMP_SPINCOUNT") != nullptr || std::getenv("OMP_WAIT_POLICY") != nullptr) return;
-  if (setenv("GOMP_SPINCOUNT", "20000", 1) == 0) execv("/proc/self/exe", argv);
-  // Where that is not possible the program runs all the same.
+  // By its own path, so that the process keeps its name. Where that is not possible it runs all the same.
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error && setenv("GOMP_SPINCOUNT", "20000", 1) == 0) execv(program.c_str(), argv);
 }
 
 }  // namespace
