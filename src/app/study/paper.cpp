@@ -36,11 +36,12 @@ struct Weld {
 
 std::vector<Weld> matrix(const PaperArguments& a) {
   const fs::path cases = repository_folder("cases", "MELTRAY_CASES");
+  const int first_seed = a.seeds == 1 ? 0 : 1, last_seed = a.seeds == 1 ? 0 : a.seeds;
   std::vector<Weld> welds;
   for (const auto& metal : a.metals)
     for (const int frequency : a.frequencies)
       for (const auto& model : a.models)
-        for (int seed = a.seeds == 1 ? 0 : 1; seed <= (a.seeds == 1 ? 0 : a.seeds); ++seed) {
+        for (int seed = first_seed; seed <= last_seed; ++seed) {
           Weld w{metal, model, frequency, seed, cases / fmt::format("weld_{}_{}hz.toml", metal, frequency),
                  {},    {},    0};
           w.folder = a.out / fmt::format("{}-{}hz-{}-seed{}", metal, frequency, model, seed);
@@ -51,10 +52,9 @@ std::vector<Weld> matrix(const PaperArguments& a) {
           if (model == "wcsph")
             w.set.push_back("flow.solid=fixed");  // the elastic solid is not in this version
           if (seed > 0)
-            for (const std::string& s :
-                 {std::string("domain.arrangement=jittered"), fmt::format("domain.jitter={}", kSeedJitter),
-                  fmt::format("domain.seed={}", seed)})
-              w.set.push_back(s);
+            w.set.insert(w.set.end(),
+                         {"domain.arrangement=jittered", fmt::format("domain.jitter={}", kSeedJitter),
+                          fmt::format("domain.seed={}", seed)});
           w.until = a.until.value_or(scene::read_case(w.case_file, w.set).time.end);
           welds.push_back(std::move(w));
         }
@@ -72,6 +72,11 @@ std::string command_of(const Weld& w) {
 nlohmann::json summary_of(const fs::path& folder) {
   std::ifstream file(folder / "summary.json");
   return file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+}
+
+/// Mean length of a step [s].
+double mean_step(const nlohmann::json& summary) {
+  return summary.value("time_s", 0.0) / std::max(1, summary.value("steps", 0));
 }
 
 bool reached(const Weld& w, const nlohmann::json& summary) {
@@ -119,9 +124,8 @@ struct Cost {
 std::string row_of(const Weld& w, const nlohmann::json& s) {
   std::string row =
       fmt::format("{},{},{},{},{},{:.9g},{},{:.9g},{:.6g},{:.6g}", w.metal, w.frequency, w.model, w.seed,
-                  s.value("outcome", "?"), s.value("time_s", 0.0), s.value("steps", 0),
-                  s.value("time_s", 0.0) / std::max(1, s.value("steps", 0)), s.value("wall_seconds", 0.0),
-                  s.value("wall_seconds_per_simulated_ms", 0.0));
+                  s.value("outcome", "?"), s.value("time_s", 0.0), s.value("steps", 0), mean_step(s),
+                  s.value("wall_seconds", 0.0), s.value("wall_seconds_per_simulated_ms", 0.0));
   const History history = observe::read_history(w.folder / "history.csv");
   for (const char* depth : {"capillary_depth_m", "axis_depth_m"}) {
     try {
@@ -182,7 +186,7 @@ int study_paper(const PaperArguments& a) {
     if (!reached(w, s)) continue;  // a failed run has no cost to compare
     Cost& c = costs[{w.metal, w.frequency}][w.model];
     c.runs += 1;
-    c.step += s.value("time_s", 0.0) / std::max(1, s.value("steps", 0));
+    c.step += mean_step(s);
     c.wall += s.value("wall_seconds_per_simulated_ms", 0.0);
   }
   observe::replace_file(a.out / "paper.csv", table);
