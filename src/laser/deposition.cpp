@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "laser/cell_grid.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/parallel.hpp"
 #include "meltray/laser/laser.hpp"
 
 namespace meltray::laser {
@@ -46,29 +47,40 @@ double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double*
     particle.push_back(i);
   }
   const CellGrid grid(points, 0.5 * radius);  // smaller cells fit the sphere more closely
-  double undeposited = 0;
-  // Serial and in the order of the hits: a few thousand hits cost well below a millisecond.
-  std::vector<std::pair<std::size_t, double>> shares;
-  for (const Hit& hit : hits) {
-    if (points.empty() || !hit.position.allFinite()) {
-      undeposited += hit.power;
-      continue;
-    }
-    shares.clear();
+  // Blocks of hits find their particles side by side; their shares are added in the order of the hits.
+  struct Share {
+    std::size_t particle;
+    double power;
+  };
+  constexpr std::ptrdiff_t kHitsPerBlock = 64;
+  const auto count = static_cast<std::ptrdiff_t>(hits.size());
+  const std::ptrdiff_t blocks = (count + kHitsPerBlock - 1) / kHitsPerBlock;
+  std::vector<std::vector<Share>> shares(static_cast<std::size_t>(blocks));
+  const auto share_out = [&](const Hit& hit, std::vector<Share>& out) {
+    if (points.empty() || !hit.position.allFinite()) return;
+    const std::size_t first = out.size();
     double sum = 0;
     grid.near(hit.position, radius, [&](std::size_t i, const Vec3& point) {
       const double r2 = (point - hit.position).squaredNorm();
       if (r2 >= radius * radius) return;
       const double fall = 1 - std::sqrt(r2) / radius;
-      shares.emplace_back(particle[i], weight[particle[i]] * fall * fall);
-      sum += shares.back().second;
+      out.push_back({particle[i], weight[particle[i]] * fall * fall});
+      sum += out.back().power;
     });
-    if (sum > 0) {
-      for (const auto& [i, w] : shares) power[i] += hit.power * (w / sum);
-    } else {
-      power[particle[nearest(grid, hit.position, radius)]] += hit.power;
-    }
-  }
+    if (sum > 0)
+      for (std::size_t k = first; k < out.size(); ++k) out[k].power = hit.power * (out[k].power / sum);
+    else
+      out.push_back({particle[nearest(grid, hit.position, radius)], hit.power});
+  };
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kSerialBelow)
+  for (std::ptrdiff_t b = 0; b < blocks; ++b)
+    for (std::ptrdiff_t h = b * kHitsPerBlock; h < std::min(count, (b + 1) * kHitsPerBlock); ++h)
+      share_out(hits[h], shares[b]);
+  for (const auto& block : shares)
+    for (const Share& s : block) power[s.particle] += s.power;
+  double undeposited = 0;
+  for (const Hit& hit : hits)
+    if (points.empty() || !hit.position.allFinite()) undeposited += hit.power;
   return undeposited;
 }
 

@@ -276,7 +276,7 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
 Vec3 Model::total_force() const {
   Vec3 sum = Vec3::Zero();
   for (int c = 0; c < constants_.dim; ++c)
-    sum[c] = parallel_sum(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
+    sum[c] = parallel_sum_rows(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = stage.moving[k];
       return patch.mass[i] * acceleration_[c][i];
     });

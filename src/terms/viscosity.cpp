@@ -210,7 +210,7 @@ ViscousSolve ViscousOperator::solve_in(const Stage& s, double gamma, const Const
   // moving particles momentum is then conserved to round-off, however loose the tolerance.
   ViscousSolve result{report.iterations, report.converged};
   for (int c = 0; c < D; ++c)
-    result.impulse[c] = parallel_sum(count, [&](std::ptrdiff_t k) {
+    result.impulse[c] = parallel_sum_rows(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       x[c][i] += vectors.r[c][i] / mass[i];
       return mass[i] * (x[c][i] - b[c][i]);
