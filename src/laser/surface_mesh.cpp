@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "laser/cloud_selection.hpp"
+#include "laser/smooth_normals.hpp"
 #include "laser/smoothed_field.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
@@ -16,8 +17,9 @@ using Cell = SmoothedField::Cell;
 constexpr double kSurface = 0.5;  // value of the field on the surface
 constexpr double kReach = 4;      // spacings: how far particles and mirror images act
 constexpr double kFlatGradient =
-    0.02;                         // per step; below it (films of one particle) the gradient has no direction
+    0.01;                         // per step; below it (films of one particle) the gradient has no direction
 constexpr double kSliver = 1e-3;  // height over longest side
+constexpr int kNormalPasses = 4;  // each averages over about a third of a spacing
 
 /// Surface nets (Gibson 1998): one vertex in each cell that the surface crosses, one quadrangle around each
 /// edge of the grid that it crosses. Unlike in Gibson's relaxation, vertices are moved onto the isosurface.
@@ -88,23 +90,18 @@ class SurfaceNets {
 
   void place(const Cell& c, std::size_t id) {
     const Crossings x = crossings(c);
+    const SmoothedField::Sample s = field_.sample(c, x.centre);
+    const double slope = s.gradient.norm();
     Vec3 local = x.centre;
-    SmoothedField::Sample s = field_.sample(c, local);
-    for (int newton = 0; newton < 2; ++newton) {
-      const double slope2 = s.gradient.squaredNorm();
-      if (slope2 < kFlatGradient * kFlatGradient) break;
-      // Kept in its cell: neighbouring vertices cannot change places then.
-      local = (local + s.gradient * ((kSurface - s.value) / slope2)).cwiseMax(0.0).cwiseMin(1.0);
-      s = field_.sample(c, local);
+    if (slope >= kFlatGradient) {
+      // Newton's step, kept in the cell: neighbouring vertices cannot change places then.
+      local = (local + s.gradient * ((kSurface - s.value) / (slope * slope))).cwiseMax(0.0).cwiseMin(1.0);
+      mesh_.normals[id] = -s.gradient / slope;
+    } else {
+      mesh_.normals[id] = x.outward.squaredNorm() > 0 ? Vec3(x.outward.normalized()) : Vec3(Vec3::UnitZ());
     }
     mesh_.vertices[id] = field_.corner(c) + field_.step() * local;
-    const Vec3 gradient = field_.smooth_gradient(c, local);
-    const double slope = gradient.norm();
-    if (slope >= kFlatGradient)
-      mesh_.normals[id] = -gradient / slope;
-    else
-      mesh_.normals[id] = x.outward.squaredNorm() > 0 ? Vec3(x.outward.normalized()) : Vec3(Vec3::UnitZ());
-    mesh_.liquid[id] = field_.liquid(c, local) > 0.5 * s.value;
+    mesh_.liquid[id] = field_.liquid(c, local);
   }
 
   void place_vertices() {
@@ -209,14 +206,16 @@ SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region) {
   if (!(dx > 0)) throw NumericalFailure("surface mesh: the particle spacing must be positive");
   const CloudSelection selected = select_cloud(cloud, region, kReach * dx);
   if (selected.position.empty()) return {};
-  // No surface is further than two steps from a particle. Vertices stand near the middle of cells, so half a
-  // cell more makes the mesh reach the faces of the region. At the top the mesh closes a cloud that was cut
+  // No surface is further than two spacings from a particle. Vertices stand near the middle of cells, so half
+  // a cell more makes the mesh reach the faces of the region. At the top the mesh closes a cloud that was cut
   // there: a lid, not a view into the metal.
-  const Vec3 half = Vec3::Constant(0.5 * dx), two = Vec3::Constant(2 * dx);
+  const Vec3 half = Vec3::Constant(0.5 * SmoothedField::kStep * dx), two = Vec3::Constant(2 * dx);
   const Box extent{(region.min - half).cwiseMax(selected.bounds.min - two),
                    (region.max + half + Vec3(0, 0, 2 * dx)).cwiseMin(selected.bounds.max + two)};
   if (!(extent.min.array() < extent.max.array()).all()) return {};
-  return SurfaceNets(SmoothedField(selected, dx * dx * dx, extent, dx)).take();
+  SurfaceMesh mesh = SurfaceNets(SmoothedField(selected, dx, extent)).take();
+  smooth_normals(mesh, kNormalPasses);
+  return mesh;
 }
 
 }  // namespace meltray::laser
