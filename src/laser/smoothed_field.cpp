@@ -56,14 +56,16 @@ double slit(double soft, double wide) {
 SmoothedField::SmoothedField(const CloudSelection& cloud, double spacing, const Box& extent)
     : step_(kStep * spacing) {
   double count = 1;
-  for (int a = 0; a < 3; ++a) {
-    const double low = std::floor(extent.min[a] / step_), high = std::ceil(extent.max[a] / step_);
-    count *= high - low + 1 + 2 * kPad;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const double low = std::floor(extent.min[axis] / step_), high = std::ceil(extent.max[axis] / step_);
+    const double pads = static_cast<double>(2 * kPad[a]);
+    count *= high - low + 1 + pads;
     if (!(count < kMaxNodes))
       throw NumericalFailure("surface mesh: the region around the beam is too large for the spacing");
-    origin_[a] = low * step_;
+    origin_[axis] = low * step_;
     cells_[a] = static_cast<std::ptrdiff_t>(high - low);
-    nodes_[a] = cells_[a] + 1 + 2 * kPad;
+    nodes_[a] = cells_[a] + 1 + 2 * kPad[a];
   }
   spread(cloud, 1 / (kStep * kStep * kStep));
   mark_phases(cloud);
@@ -72,22 +74,21 @@ SmoothedField::SmoothedField(const CloudSelection& cloud, double spacing, const 
 }
 
 void SmoothedField::spread(const CloudSelection& cloud, double share) {
-  // Particles sorted by their row of cells along x; every row of nodes then gathers from 16 such rows.
-  const std::size_t rows = static_cast<std::size_t>(nodes_[1] * nodes_[2]);
+  // Particles sorted by their row of cells along x; every row of nodes then gathers from 16 such rows. Along
+  // x only particles all of whose nodes exist take part, which is why the pad is wider there.
+  const std::ptrdiff_t cells_y = nodes_[1] + 3;  // rows from the one that ends below the first row of nodes
+  const std::size_t rows = static_cast<std::size_t>(cells_y * (nodes_[2] + 3));
   const std::size_t n = cloud.position.size();
   constexpr std::size_t kOutside = ~std::size_t{0};
   std::vector<std::size_t> row_of(n), start(rows + 1, 0);
   for (std::size_t p = 0; p < n; ++p) {
-    std::array<std::ptrdiff_t, 3> c;
-    bool reaches = true;
-    for (int a = 0; a < 3; ++a) {
-      const double u = std::floor((cloud.position[p][a] - origin_[a]) / step_) + kPad;
-      reaches &= u >= 1 && u <= static_cast<double>(nodes_[a] - 3);
-      c[a] = reaches ? static_cast<std::ptrdiff_t>(u) : 0;
-    }
-    row_of[p] = reaches ? static_cast<std::size_t>(c[2] * nodes_[1] + c[1]) : kOutside;
-    if (!reaches) continue;
-    ++start[row_of[p] + 1];
+    const Vec3 u = ((cloud.position[p] - origin_) / step_).array().floor();
+    const std::ptrdiff_t x = static_cast<std::ptrdiff_t>(u.x()) + kPad[0],
+                         y = static_cast<std::ptrdiff_t>(u.y()) + kPad[1] + 2,
+                         z = static_cast<std::ptrdiff_t>(u.z()) + kPad[2] + 2;
+    const bool reaches = x >= 1 && x <= nodes_[0] - 3 && y >= 0 && y < cells_y && z >= 0 && z < nodes_[2] + 3;
+    row_of[p] = reaches ? static_cast<std::size_t>(z * cells_y + y) : kOutside;
+    if (reaches) ++start[row_of[p] + 1];
   }
   for (std::size_t r = 0; r < rows; ++r) start[r + 1] += start[r];
   std::vector<std::size_t> cursor(start.begin(), start.end() - 1), order(start.back());
@@ -104,18 +105,16 @@ void SmoothedField::spread(const CloudSelection& cloud, double share) {
     for (double& w : s.x) w *= share;
     s.y = spline(t.y());
     s.z = spline(t.z());
-    s.first_x = static_cast<std::ptrdiff_t>(base.x()) + kPad - 1;
+    s.first_x = static_cast<std::ptrdiff_t>(base.x()) + kPad[0] - 1;
   });
 
-  metal_.assign(rows * static_cast<std::size_t>(nodes_[0]), 0.0);
-  parallel_for(static_cast<std::ptrdiff_t>(rows), [&](std::ptrdiff_t row) {
+  metal_.assign(static_cast<std::size_t>(nodes_[0] * nodes_[1] * nodes_[2]), 0.0);
+  parallel_for(nodes_[1] * nodes_[2], [&](std::ptrdiff_t row) {
     const std::ptrdiff_t j = row % nodes_[1], k = row / nodes_[1];
     double* metal = metal_.data() + row * nodes_[0];
     for (std::ptrdiff_t b = 3; b >= 0; --b) {
       for (std::ptrdiff_t a = 3; a >= 0; --a) {
-        const std::ptrdiff_t jp = j + 1 - a, kp = k + 1 - b;
-        if (jp < 0 || kp < 0 || jp >= nodes_[1] || kp >= nodes_[2]) continue;
-        const std::size_t from = static_cast<std::size_t>(kp * nodes_[1] + jp);
+        const std::size_t from = static_cast<std::size_t>((k + 3 - b) * cells_y + j + 3 - a);
         for (std::size_t q = start[from]; q < start[from + 1]; ++q) {
           const Splat& s = splats[q];
           const double w = s.y[static_cast<std::size_t>(a)] * s.z[static_cast<std::size_t>(b)];
@@ -130,12 +129,12 @@ void SmoothedField::mark_phases(const CloudSelection& cloud) {
   if (std::none_of(cloud.liquid.begin(), cloud.liquid.end(), [](std::uint8_t l) { return l != 0; })) return;
   excess_.assign(metal_.size(), 0.0);
   for (std::size_t p = 0; p < cloud.position.size(); ++p) {
-    const Vec3 u = ((cloud.position[p] - origin_) / step_).array().round();
+    const Vec3 u = (cloud.position[p] - origin_) / step_;
     Cell c;
     bool inside = true;
     for (std::size_t a = 0; a < 3; ++a) {
-      c[a] = static_cast<std::ptrdiff_t>(u[static_cast<int>(a)]);
-      inside &= c[a] >= -kPad && c[a] <= cells_[a] + kPad;
+      c[a] = static_cast<std::ptrdiff_t>(std::floor(u[static_cast<int>(a)] + 0.5));
+      inside &= c[a] >= -kPad[a] && c[a] <= cells_[a] + kPad[a];
     }
     if (inside) excess_[node(c)] += cloud.liquid[p] ? 1 : -1;
   }

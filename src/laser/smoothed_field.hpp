@@ -56,12 +56,13 @@ class SmoothedField {
   /// Value and gradient of the spline with the given coefficients.
   Sample evaluate(const std::vector<double>& coefficients, const Cell& cell, const Vec3& local) const;
   std::size_t node(const Cell& c) const {
-    return static_cast<std::size_t>(((c[2] + kPad) * nodes_[1] + c[1] + kPad) * nodes_[0] + c[0] + kPad);
+    return static_cast<std::size_t>(((c[2] + kPad[2]) * nodes_[1] + c[1] + kPad[1]) * nodes_[0] + c[0] +
+                                    kPad[0]);
   }
 
-  // Nodes beyond the cells: one that vertices reach, two for each filter, and one less than the three at the
-  // rim that lack the particles beyond it, whose weight in the second filter is small.
-  static constexpr std::ptrdiff_t kPad = 6;
+  // Nodes beyond the cells: one that vertices reach and what the filters reach beyond it, less one, whose
+  // weight is small. Along x three more, which lack the particles beyond the rim.
+  static constexpr Cell kPad = {6, 4, 4};
 
   double step_;
   Vec3 origin_;

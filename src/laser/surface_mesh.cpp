@@ -26,6 +26,7 @@ constexpr int kNormalPasses = 4;  // each averages over about a third of a spaci
 class SurfaceNets {
  public:
   explicit SurfaceNets(const SmoothedField& field) : field_(field), n_(field.cells()), rows_(n_[1] * n_[2]) {
+    find_rows();
     place_vertices();
     connect();
   }
@@ -50,9 +51,28 @@ class SurfaceNets {
     return static_cast<std::size_t>((c[2] * n_[1] + c[1]) * n_[0] + c[0]);
   }
 
-  /// Runs f(cell) over a row of cells along x.
+  /// Marks the rows of cells that the surface crosses: most are all metal or all void.
+  void find_rows() {
+    enum : std::uint8_t { kVoid, kMetal, kMixed };
+    std::vector<std::uint8_t> corners(static_cast<std::size_t>((n_[1] + 1) * (n_[2] + 1)));
+    parallel_for((n_[1] + 1) * (n_[2] + 1), [&](std::ptrdiff_t row) {
+      std::ptrdiff_t inside = 0;
+      for (std::ptrdiff_t i = 0; i <= n_[0]; ++i) inside += metal(i, row % (n_[1] + 1), row / (n_[1] + 1));
+      corners[static_cast<std::size_t>(row)] = inside == 0 ? kVoid : (inside == n_[0] + 1 ? kMetal : kMixed);
+    });
+    mixed_.resize(static_cast<std::size_t>(rows_));
+    for (std::ptrdiff_t row = 0; row < rows_; ++row) {
+      const std::uint8_t* c = corners.data() + row / n_[1] * (n_[1] + 1) + row % n_[1];
+      const std::uint8_t* above = c + n_[1] + 1;
+      mixed_[static_cast<std::size_t>(row)] =
+          c[0] == kMixed || c[1] != c[0] || above[0] != c[0] || above[1] != c[0];
+    }
+  }
+
+  /// Runs f(cell) over a row of cells along x, if the surface crosses it.
   template <class F>
   void for_row(std::ptrdiff_t row, F&& f) const {
+    if (!mixed_[static_cast<std::size_t>(row)]) return;
     Cell c{0, row % n_[1], row / n_[1]};
     for (; c[0] < n_[0]; ++c[0]) f(c);
   }
@@ -195,6 +215,7 @@ class SurfaceNets {
   const SmoothedField& field_;
   Cell n_;
   std::ptrdiff_t rows_;
+  std::vector<std::uint8_t> mixed_;   // by row of cells: 1 where the surface crosses it
   std::vector<std::int32_t> vertex_;  // of each cell; -1: the surface does not cross it
   SurfaceMesh mesh_;
 };
