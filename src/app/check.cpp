@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/known_limits.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
@@ -257,6 +258,13 @@ void print_run_time(const Simulation& simulation, double step) {
                                threads() == 1 ? "" : "s"));
 }
 
+void print_limits_passed(const Scene& s) {
+  const auto found = beyond_known_limits(s);
+  if (found.empty()) return;
+  heading("warning: beyond what validation/studies found stable");
+  for (const std::string& text : found) fmt::print("  {}\n", text);
+}
+
 }  // namespace
 
 int check(const std::filesystem::path& case_file, const std::vector<std::string>& set) {
@@ -282,6 +290,7 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
   print_compressibility(scene);
   print_laser(scene);
   print_run_time(simulation, step);
+  print_limits_passed(scene);
   return kExitOk;
 }
 

@@ -83,11 +83,17 @@ class CommandLine {
   void add_validate() {
     auto* c = app_.add_subcommand("validate", "Runs validation cases against their references");
     c->add_option("ID", validate_.ids, "Validation cases");
-    c->add_flag("--all", validate_.all, "All of them");
-    c->add_option("--tier", validate_.tier, "1: analytic, 2: flow benchmarks");
+    c->add_flag("--all", validate_.all, "Tiers 1 and 2");
+    c->add_option("--tier", validate_.tier, "1: analytic, 2: flow benchmarks, 3: welds against experiment");
     c->add_flag("--list", validate_.list, "Only list them");
     c->add_flag("--small", validate_.small, "The twins that take seconds");
     c->add_option("--json", validate_.json, "Write the results to this file");
+    c->add_flag("--commands", validate_.commands, "Tier 3: only print the commands of what is still to run");
+    c->add_flag("--finished", validate_.finished, "Tier 3: compare what has run, start nothing");
+    c->add_option("--out", validate_.out,
+                  "Tier 3: folder of the runs, which are kept [default: runs/validation]");
+    c->add_option("--threads", validate_.threads, "Tier 3: threads [default: all cores]")
+        ->check(CLI::PositiveNumber);
     c->callback([this] { command_ = [this] { return validate(validate_); }; });
   }
 

@@ -10,10 +10,17 @@
 namespace meltray::laser {
 namespace {
 
-// Nodes beyond the cells: one that the spline of the outermost cell reaches, and what particles beyond it
-// need to spread without a check of bounds.
-constexpr std::ptrdiff_t kPad = 4;
 constexpr double kMaxNodes = 2e8;
+
+// Smoothing by (1/4, 1/2, 1/4), applied so many times. The two splines have a variance of 2/3 steps squared;
+// each time adds 1/2.
+constexpr int kSharpToSoft = 2, kSoftToWide = 2;
+// A slit is where the widely smoothed field is above its value 1/2 at a flat wall and, as in any hollow,
+// above the soft one: from none to full. Near 1 it is but the disorder of dense metal.
+constexpr double kFlat = 0.5, kSurrounded = 0.7, kHollow = 0.05, kDisorder = 0.8, kDense = 0.9;
+// Chosen, as the limits above, so that wedges of 15 to 45 degrees are right as close to the tip as the two
+// walls can be told apart, and walls of disordered particles stay as smooth as without.
+constexpr double kSharpening = 2.25;
 
 using Weights = std::array<double, 4>;
 
@@ -31,63 +38,57 @@ Weights spline_derivative(double t) {
 
 /// A particle with the weights of its 4 x 4 x 4 nodes.
 struct Splat {
-  std::array<Weights, 3> w;
-  std::ptrdiff_t first_x;  // node of w[0][0]
-  bool liquid;
+  Weights x, y, z;
+  std::ptrdiff_t first_x;  // node of x[0]
 };
 
-/// Adds to out[0 .. n) the nodes from `in` on, weighed with their 27 neighbours by `w` along every axis.
-void filter_row(const double* in, const SmoothedField::Cell& nodes, const std::array<double, 3>& w,
-                std::ptrdiff_t n, double* out) {
-  for (std::ptrdiff_t b = 0; b < 3; ++b) {
-    for (std::ptrdiff_t a = 0; a < 3; ++a) {
-      const double across = w[static_cast<std::size_t>(a)] * w[static_cast<std::size_t>(b)];
-      const double* m = in + ((b - 1) * nodes[1] + a - 1) * nodes[0];
-      for (std::ptrdiff_t i = 0; i < n; ++i)
-        out[i] += across * (w[0] * m[i - 1] + w[1] * m[i] + w[2] * m[i + 1]);
-    }
-  }
+double ramp(double x, double none, double full) {
+  return std::clamp((x - none) / (full - none), 0.0, 1.0);
+}
+
+/// 0 at flat walls, outside convex metal and in dense metal, 1 in slits.
+double slit(double soft, double wide) {
+  return ramp(wide, kFlat, kSurrounded) * ramp(wide - soft, 0, kHollow) * ramp(wide, kDense, kDisorder);
 }
 
 }  // namespace
 
-SmoothedField::SmoothedField(const CloudSelection& cloud, double particle_volume, const Box& extent,
-                             double step)
-    : step_(step) {
+SmoothedField::SmoothedField(const CloudSelection& cloud, double spacing, const Box& extent)
+    : step_(kStep * spacing) {
   double count = 1;
-  for (int a = 0; a < 3; ++a) {
-    const double low = std::floor(extent.min[a] / step), high = std::ceil(extent.max[a] / step);
-    count *= high - low + 1 + 2 * kPad;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const double low = std::floor(extent.min[axis] / step_), high = std::ceil(extent.max[axis] / step_);
+    const double pads = static_cast<double>(2 * kPad[a]);
+    count *= high - low + 1 + pads;
     if (!(count < kMaxNodes))
       throw NumericalFailure("surface mesh: the region around the beam is too large for the spacing");
-    origin_[a] = low * step;
+    origin_[axis] = low * step_;
     cells_[a] = static_cast<std::ptrdiff_t>(high - low);
-    nodes_[a] = cells_[a] + 1 + 2 * kPad;
+    nodes_[a] = cells_[a] + 1 + 2 * kPad[a];
   }
-  spread(cloud, particle_volume / (step * step * step));
+  spread(cloud, 1 / (kStep * kStep * kStep));
+  mark_phases(cloud);
+  open_slits();
   evaluate_corners();
-  smooth();
 }
 
 void SmoothedField::spread(const CloudSelection& cloud, double share) {
-  // Particles sorted by their row of cells along x; every row of nodes then gathers from 16 such rows.
-  const std::size_t rows = static_cast<std::size_t>(nodes_[1] * nodes_[2]);
+  // Particles sorted by their row of cells along x; every row of nodes then gathers from 16 such rows. Along
+  // x only particles all of whose nodes exist take part, which is why the pad is wider there.
+  const std::ptrdiff_t cells_y = nodes_[1] + 3;  // rows from the one that ends below the first row of nodes
+  const std::size_t rows = static_cast<std::size_t>(cells_y * (nodes_[2] + 3));
   const std::size_t n = cloud.position.size();
   constexpr std::size_t kOutside = ~std::size_t{0};
   std::vector<std::size_t> row_of(n), start(rows + 1, 0);
-  bool any_liquid = false;
   for (std::size_t p = 0; p < n; ++p) {
-    std::array<std::ptrdiff_t, 3> c;
-    bool reaches = true;
-    for (int a = 0; a < 3; ++a) {
-      const double u = std::floor((cloud.position[p][a] - origin_[a]) / step_) + kPad;
-      reaches &= u >= 1 && u <= static_cast<double>(nodes_[a] - 3);
-      c[a] = reaches ? static_cast<std::ptrdiff_t>(u) : 0;
-    }
-    row_of[p] = reaches ? static_cast<std::size_t>(c[2] * nodes_[1] + c[1]) : kOutside;
-    if (!reaches) continue;
-    ++start[row_of[p] + 1];
-    any_liquid |= cloud.liquid[p] != 0;
+    const Vec3 u = ((cloud.position[p] - origin_) / step_).array().floor();
+    const std::ptrdiff_t x = static_cast<std::ptrdiff_t>(u.x()) + kPad[0],
+                         y = static_cast<std::ptrdiff_t>(u.y()) + kPad[1] + 2,
+                         z = static_cast<std::ptrdiff_t>(u.z()) + kPad[2] + 2;
+    const bool reaches = x >= 1 && x <= nodes_[0] - 3 && y >= 0 && y < cells_y && z >= 0 && z < nodes_[2] + 3;
+    row_of[p] = reaches ? static_cast<std::size_t>(z * cells_y + y) : kOutside;
+    if (reaches) ++start[row_of[p] + 1];
   }
   for (std::size_t r = 0; r < rows; ++r) start[r + 1] += start[r];
   std::vector<std::size_t> cursor(start.begin(), start.end() - 1), order(start.back());
@@ -98,61 +99,66 @@ void SmoothedField::spread(const CloudSelection& cloud, double share) {
   parallel_for(static_cast<std::ptrdiff_t>(order.size()), [&](std::ptrdiff_t q) {
     const std::size_t p = order[static_cast<std::size_t>(q)];
     Splat& s = splats[static_cast<std::size_t>(q)];
-    for (int a = 0; a < 3; ++a) {
-      const double u = (cloud.position[p][a] - origin_[a]) / step_;
-      const double base = std::floor(u);
-      s.w[static_cast<std::size_t>(a)] = spline(u - base);
-      if (a == 0) s.first_x = static_cast<std::ptrdiff_t>(base) + kPad - 1;
-    }
-    for (double& w : s.w[0]) w *= share;
-    s.liquid = cloud.liquid[p] != 0;
+    const Vec3 u = (cloud.position[p] - origin_) / step_;
+    const Vec3 base = u.array().floor(), t = u - base;
+    s.x = spline(t.x());
+    for (double& w : s.x) w *= share;
+    s.y = spline(t.y());
+    s.z = spline(t.z());
+    s.first_x = static_cast<std::ptrdiff_t>(base.x()) + kPad[0] - 1;
   });
 
-  metal_.assign(rows * static_cast<std::size_t>(nodes_[0]), 0.0);
-  if (any_liquid) liquid_.assign(metal_.size(), 0.0);
-  parallel_for(static_cast<std::ptrdiff_t>(rows), [&](std::ptrdiff_t row) {
+  metal_.assign(static_cast<std::size_t>(nodes_[0] * nodes_[1] * nodes_[2]), 0.0);
+  parallel_for(nodes_[1] * nodes_[2], [&](std::ptrdiff_t row) {
     const std::ptrdiff_t j = row % nodes_[1], k = row / nodes_[1];
     double* metal = metal_.data() + row * nodes_[0];
-    double* liquid = any_liquid ? liquid_.data() + row * nodes_[0] : nullptr;
     for (std::ptrdiff_t b = 3; b >= 0; --b) {
       for (std::ptrdiff_t a = 3; a >= 0; --a) {
-        const std::ptrdiff_t jp = j + 1 - a, kp = k + 1 - b;
-        if (jp < 0 || kp < 0 || jp >= nodes_[1] || kp >= nodes_[2]) continue;
-        const std::size_t from = static_cast<std::size_t>(kp * nodes_[1] + jp);
+        const std::size_t from = static_cast<std::size_t>((k + 3 - b) * cells_y + j + 3 - a);
         for (std::size_t q = start[from]; q < start[from + 1]; ++q) {
           const Splat& s = splats[q];
-          const double w = s.w[1][static_cast<std::size_t>(a)] * s.w[2][static_cast<std::size_t>(b)];
-          for (std::size_t i = 0; i < 4; ++i)
-            metal[s.first_x + static_cast<std::ptrdiff_t>(i)] += w * s.w[0][i];
-          if (s.liquid)
-            for (std::size_t i = 0; i < 4; ++i)
-              liquid[s.first_x + static_cast<std::ptrdiff_t>(i)] += w * s.w[0][i];
+          const double w = s.y[static_cast<std::size_t>(a)] * s.z[static_cast<std::size_t>(b)];
+          for (std::size_t i = 0; i < 4; ++i) metal[s.first_x + static_cast<std::ptrdiff_t>(i)] += w * s.x[i];
         }
       }
     }
   });
 }
 
-void SmoothedField::evaluate_corners() {
-  // A cubic spline at a node weighs the coefficients there and beside it 1/6, 2/3, 1/6.
-  const std::ptrdiff_t nx = cells_[0] + 1, ny = cells_[1] + 1, nz = cells_[2] + 1;
-  corner_value_.assign(static_cast<std::size_t>(nx * ny * nz), 0.0);
-  parallel_for(ny * nz, [&](std::ptrdiff_t row) {
-    const std::ptrdiff_t node = ((row / ny + kPad) * nodes_[1] + row % ny + kPad) * nodes_[0] + kPad;
-    filter_row(metal_.data() + node, nodes_, {1.0 / 6, 2.0 / 3, 1.0 / 6}, nx,
-               corner_value_.data() + row * nx);
-  });
+void SmoothedField::mark_phases(const CloudSelection& cloud) {
+  if (std::none_of(cloud.liquid.begin(), cloud.liquid.end(), [](std::uint8_t l) { return l != 0; })) return;
+  excess_.assign(metal_.size(), 0.0);
+  for (std::size_t p = 0; p < cloud.position.size(); ++p) {
+    const Vec3 u = (cloud.position[p] - origin_) / step_;
+    Cell c;
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      c[a] = static_cast<std::ptrdiff_t>(std::floor(u[static_cast<int>(a)] + 0.5));
+      inside &= c[a] >= -kPad[a] && c[a] <= cells_[a] + kPad[a];
+    }
+    if (inside) excess_[node(c)] += cloud.liquid[p] ? 1 : -1;
+  }
 }
 
-void SmoothedField::smooth() {
-  // The nodes that vertices in the cells reach: one beyond the corners.
-  const std::ptrdiff_t nx = cells_[0] + 3, ny = cells_[1] + 3, nz = cells_[2] + 3;
-  smoothed_.assign(metal_.size(), 0.0);
-  parallel_for(ny * nz, [&](std::ptrdiff_t row) {
-    const std::ptrdiff_t node =
-        ((row / ny + kPad - 1) * nodes_[1] + row % ny + kPad - 1) * nodes_[0] + kPad - 1;
-    filter_row(metal_.data() + node, nodes_, {0.25, 0.5, 0.25}, nx, smoothed_.data() + node);
-  });
+void SmoothedField::open_slits() {
+  corner_value_ = metal_;  // sharp
+  const double* sharp = corner_value_.data();
+  filter(metal_, nodes_, binomial(kSharpToSoft));
+  std::vector<double> wide = metal_;
+  filter(wide, nodes_, binomial(kSoftToWide));
+  for (std::size_t q = 0; q < metal_.size(); ++q)
+    if (wide[q] > kFlat && wide[q] > metal_[q] && metal_[q] > sharp[q])
+      metal_[q] -= kSharpening * slit(metal_[q], wide[q]) * (metal_[q] - sharp[q]);
+}
+
+void SmoothedField::evaluate_corners() {
+  // A cubic spline at a node weighs the coefficients there and beside it 1/6, 2/3, 1/6.
+  corner_value_ = metal_;
+  filter(corner_value_, nodes_, {2.0 / 3, 1.0 / 6});
+}
+
+bool SmoothedField::liquid(const Cell& cell, const Vec3& local) const {
+  return !excess_.empty() && evaluate(excess_, cell, local).value > 0;
 }
 
 SmoothedField::Sample SmoothedField::evaluate(const std::vector<double>& coefficients, const Cell& cell,
@@ -163,9 +169,7 @@ SmoothedField::Sample SmoothedField::evaluate(const std::vector<double>& coeffic
     d[a] = spline_derivative(local[static_cast<int>(a)]);
   }
   Sample s{0, Vec3::Zero()};
-  const double* corner = coefficients.data() +
-                         ((cell[2] + kPad - 1) * nodes_[1] + cell[1] + kPad - 1) * nodes_[0] + cell[0] +
-                         kPad - 1;
+  const double* corner = coefficients.data() + node({cell[0] - 1, cell[1] - 1, cell[2] - 1});
   for (std::size_t b = 0; b < 4; ++b) {
     for (std::size_t a = 0; a < 4; ++a) {
       const double* m =

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "laser/cloud_selection.hpp"
+#include "laser/smooth_normals.hpp"
 #include "laser/smoothed_field.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
@@ -15,15 +16,18 @@ namespace {
 using Cell = SmoothedField::Cell;
 constexpr double kSurface = 0.5;  // value of the field on the surface
 constexpr double kReach = 4;      // spacings: how far particles and mirror images act
-constexpr double kFlatGradient =
-    0.02;                         // per step; below it (films of one particle) the gradient has no direction
+// Per step; below it (films of one particle) the gradient has no direction.
+constexpr double kFlatGradient = 0.01;
 constexpr double kSliver = 1e-3;  // height over longest side
+// With these, walls of disordered particles are as smooth as under a Gaussian of 1.1 spacings.
+constexpr int kNormalPasses = 4;
 
 /// Surface nets (Gibson 1998): one vertex in each cell that the surface crosses, one quadrangle around each
 /// edge of the grid that it crosses. Unlike in Gibson's relaxation, vertices are moved onto the isosurface.
 class SurfaceNets {
  public:
   explicit SurfaceNets(const SmoothedField& field) : field_(field), n_(field.cells()), rows_(n_[1] * n_[2]) {
+    find_rows();
     place_vertices();
     connect();
   }
@@ -48,9 +52,28 @@ class SurfaceNets {
     return static_cast<std::size_t>((c[2] * n_[1] + c[1]) * n_[0] + c[0]);
   }
 
-  /// Runs f(cell) over a row of cells along x.
+  /// Marks the rows of cells that the surface crosses: most are all metal or all void.
+  void find_rows() {
+    enum : std::uint8_t { kVoid, kMetal, kMixed };
+    std::vector<std::uint8_t> corners(static_cast<std::size_t>((n_[1] + 1) * (n_[2] + 1)));
+    parallel_for((n_[1] + 1) * (n_[2] + 1), [&](std::ptrdiff_t row) {
+      std::ptrdiff_t inside = 0;
+      for (std::ptrdiff_t i = 0; i <= n_[0]; ++i) inside += metal(i, row % (n_[1] + 1), row / (n_[1] + 1));
+      corners[static_cast<std::size_t>(row)] = inside == 0 ? kVoid : (inside == n_[0] + 1 ? kMetal : kMixed);
+    });
+    mixed_.resize(static_cast<std::size_t>(rows_));
+    for (std::ptrdiff_t row = 0; row < rows_; ++row) {
+      const std::uint8_t* c = corners.data() + row / n_[1] * (n_[1] + 1) + row % n_[1];
+      const std::uint8_t* above = c + n_[1] + 1;
+      mixed_[static_cast<std::size_t>(row)] =
+          c[0] == kMixed || c[1] != c[0] || above[0] != c[0] || above[1] != c[0];
+    }
+  }
+
+  /// Runs f(cell) over a row of cells along x, if the surface crosses it.
   template <class F>
   void for_row(std::ptrdiff_t row, F&& f) const {
+    if (!mixed_[static_cast<std::size_t>(row)]) return;
     Cell c{0, row % n_[1], row / n_[1]};
     for (; c[0] < n_[0]; ++c[0]) f(c);
   }
@@ -88,23 +111,18 @@ class SurfaceNets {
 
   void place(const Cell& c, std::size_t id) {
     const Crossings x = crossings(c);
+    const SmoothedField::Sample s = field_.sample(c, x.centre);
+    const double slope = s.gradient.norm();
     Vec3 local = x.centre;
-    SmoothedField::Sample s = field_.sample(c, local);
-    for (int newton = 0; newton < 2; ++newton) {
-      const double slope2 = s.gradient.squaredNorm();
-      if (slope2 < kFlatGradient * kFlatGradient) break;
-      // Kept in its cell: neighbouring vertices cannot change places then.
-      local = (local + s.gradient * ((kSurface - s.value) / slope2)).cwiseMax(0.0).cwiseMin(1.0);
-      s = field_.sample(c, local);
+    if (slope >= kFlatGradient) {
+      // Newton's step, kept in the cell: neighbouring vertices cannot change places then.
+      local = (local + s.gradient * ((kSurface - s.value) / (slope * slope))).cwiseMax(0.0).cwiseMin(1.0);
+      mesh_.normals[id] = -s.gradient / slope;
+    } else {
+      mesh_.normals[id] = x.outward.squaredNorm() > 0 ? Vec3(x.outward.normalized()) : Vec3(Vec3::UnitZ());
     }
     mesh_.vertices[id] = field_.corner(c) + field_.step() * local;
-    const Vec3 gradient = field_.smooth_gradient(c, local);
-    const double slope = gradient.norm();
-    if (slope >= kFlatGradient)
-      mesh_.normals[id] = -gradient / slope;
-    else
-      mesh_.normals[id] = x.outward.squaredNorm() > 0 ? Vec3(x.outward.normalized()) : Vec3(Vec3::UnitZ());
-    mesh_.liquid[id] = field_.liquid(c, local) > 0.5 * s.value;
+    mesh_.liquid[id] = field_.liquid(c, local);
   }
 
   void place_vertices() {
@@ -198,6 +216,7 @@ class SurfaceNets {
   const SmoothedField& field_;
   Cell n_;
   std::ptrdiff_t rows_;
+  std::vector<std::uint8_t> mixed_;   // by row of cells: 1 where the surface crosses it
   std::vector<std::int32_t> vertex_;  // of each cell; -1: the surface does not cross it
   SurfaceMesh mesh_;
 };
@@ -209,14 +228,16 @@ SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region) {
   if (!(dx > 0)) throw NumericalFailure("surface mesh: the particle spacing must be positive");
   const CloudSelection selected = select_cloud(cloud, region, kReach * dx);
   if (selected.position.empty()) return {};
-  // No surface is further than two steps from a particle. Vertices stand near the middle of cells, so half a
-  // cell more makes the mesh reach the faces of the region. At the top the mesh closes a cloud that was cut
+  // No surface is further than two spacings from a particle. Vertices stand near the middle of cells, so half
+  // a cell more makes the mesh reach the faces of the region. At the top the mesh closes a cloud that was cut
   // there: a lid, not a view into the metal.
-  const Vec3 half = Vec3::Constant(0.5 * dx), two = Vec3::Constant(2 * dx);
+  const Vec3 half = Vec3::Constant(0.5 * SmoothedField::kStep * dx), two = Vec3::Constant(2 * dx);
   const Box extent{(region.min - half).cwiseMax(selected.bounds.min - two),
                    (region.max + half + Vec3(0, 0, 2 * dx)).cwiseMin(selected.bounds.max + two)};
   if (!(extent.min.array() < extent.max.array()).all()) return {};
-  return SurfaceNets(SmoothedField(selected, dx * dx * dx, extent, dx)).take();
+  SurfaceMesh mesh = SurfaceNets(SmoothedField(selected, dx, extent)).take();
+  smooth_normals(mesh, kNormalPasses);
+  return mesh;
 }
 
 }  // namespace meltray::laser

@@ -28,7 +28,8 @@ class Usage(Scratch):
                                    (("run", WELD, "--until", "-1"), "--until"),
                                    (("run", WELD, "--until", "nan"), "--until"),
                                    (("resume", "nowhere"), "nowhere: no such run folder"),
-                                   (("validate", "--tier", "4"), "allowed 1 or 2"),
+                                   (("validate", "--tier", "4"), "allowed 1, 2 or 3"),
+                                   (("validate", "--tier", "1", "--commands"), "allowed welds of tier 3"),
                                    (("validate", "--tier", "1", "--all"), "allowed one of them"),
                                    (("validate",), "found no validation case"),
                                    (("plot", "nowhere"), "nowhere"), (("list", "planets"), "planets")):

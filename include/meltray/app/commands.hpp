@@ -30,9 +30,13 @@ struct ResumeArguments {
 
 struct ValidateArguments {
   std::vector<std::string> ids;
-  std::optional<int> tier;                        ///< 1 analytic, 2 flow benchmarks
+  std::optional<int> tier;                        ///< 1 analytic, 2 flow benchmarks, 3 welds
   bool all = false, list = false, small = false;  ///< small: the seconds-long twins that ./dev test runs
+  bool commands = false;  ///< print the commands of the welds that are still to run, and nothing else
+  bool finished = false;  ///< compare the welds that have run; start none
+  std::filesystem::path out = "runs/validation";  ///< of the welds of tier 3, which are kept there
   std::optional<std::filesystem::path> json;
+  int threads = 0;  ///< of the welds of tier 3
 };
 
 struct StudyArguments {

@@ -43,8 +43,8 @@ struct Box {
 };
 
 /// Isosurface (one half) of the smoothed volume fraction of the cloud inside `region`, as a triangle mesh on
-/// a grid of the particle spacing, with normals from the gradient of the field smoothed a little more.
-/// Vertices are finite; slivers are dropped. The mesh is open where the metal leaves the region: give
+/// a grid of two thirds of the particle spacing, with normals averaged along the surface over a spacing or
+/// so. Vertices are finite; slivers are dropped. The mesh is open where the metal leaves the region: give
 /// particles up to four spacings outside, or none where the metal was cropped at a side or the bottom of the
 /// region (it is then continued by its mirror image). A free side of the metal must be more than a spacing
 /// inside the region. The top face is never taken for a crop. A particle on its own is too small to show.

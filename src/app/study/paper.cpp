@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "app/listed_run.hpp"
 #include "app/repository.hpp"
 #include "app/response.hpp"
 #include "app/script.hpp"
@@ -14,7 +14,6 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/history.hpp"
-#include "meltray/observe/run_folder.hpp"
 #include "meltray/scene/case_file.hpp"
 
 namespace meltray::app {
@@ -26,12 +25,9 @@ constexpr double kSeedJitter = 0.05;
 constexpr const char* kIsph = "isph";
 
 /// One weld of the matrix.
-struct Weld {
+struct Weld : ListedRun {
   std::string metal, model;
   int frequency = 0, seed = 0;  ///< [Hz]; seed 0: undisturbed lattice
-  fs::path case_file, folder;
-  std::vector<std::string> set;
-  double until = 0;
 };
 
 std::vector<Weld> matrix(const PaperArguments& a) {
@@ -42,8 +38,11 @@ std::vector<Weld> matrix(const PaperArguments& a) {
     for (const int frequency : a.frequencies)
       for (const auto& model : a.models)
         for (int seed = first_seed; seed <= last_seed; ++seed) {
-          Weld w{metal, model, frequency, seed, cases / fmt::format("weld_{}_{}hz.toml", metal, frequency),
-                 {},    {},    0};
+          Weld w{{cases / fmt::format("weld_{}_{}hz.toml", metal, frequency), {}, {}, 0},
+                 metal,
+                 model,
+                 frequency,
+                 seed};
           w.folder = a.out / fmt::format("{}-{}hz-{}-seed{}", metal, frequency, model, seed);
           if (!fs::exists(w.case_file))
             throw UsageError(fmt::format("study paper: {} at {} Hz: there is no {}", metal, frequency,
@@ -61,51 +60,9 @@ std::vector<Weld> matrix(const PaperArguments& a) {
   return welds;
 }
 
-std::string command_of(const Weld& w) {
-  std::string text =
-      fmt::format("meltray run {} --out {} --until {}", w.case_file.string(), w.folder.string(), w.until);
-  for (const auto& s : w.set) text += " --set " + s;
-  return text;
-}
-
-/// Summary of a run folder, or null where there is none.
-nlohmann::json summary_of(const fs::path& folder) {
-  std::ifstream file(folder / "summary.json");
-  return file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
-}
-
 /// Mean length of a step [s].
 double mean_step(const nlohmann::json& summary) {
   return summary.value("time_s", 0.0) / std::max(1, summary.value("steps", 0));
-}
-
-bool reached(const Weld& w, const nlohmann::json& summary) {
-  return summary.is_object() && summary.value("time_s", 0.0) >= w.until * (1 - 1e-9);
-}
-
-/// Runs or continues one weld; a numerical failure is left in its folder and stops nothing but itself.
-int run_weld(const Weld& w, const PaperArguments& a) {
-  try {
-    if (observe::is_run_folder(w.folder)) {
-      ResumeArguments again;
-      again.run_folder = w.folder;
-      again.until = w.until;
-      again.threads = a.threads;
-      again.quiet = true;
-      return resume(again);
-    }
-    RunArguments first;
-    first.case_file = w.case_file;
-    first.out = w.folder;
-    first.set = w.set;
-    first.until = w.until;
-    first.threads = a.threads;
-    first.quiet = true;
-    return run(first);
-  } catch (const NumericalFailure& e) {
-    fmt::print("{}: {}\n", w.folder.filename().string(), e.what());
-    return kExitOk;
-  }
 }
 
 /// Two-sided 95 % quantile of Student's distribution with n - 1 degrees of freedom over sqrt(n).
@@ -177,7 +134,7 @@ int study_paper(const PaperArguments& a) {
     if (!reached(w, summary_of(w.folder))) {
       fmt::print("{}\n", w.folder.string());
       std::fflush(stdout);
-      const int code = run_weld(w, a);
+      const int code = carry_out(w, a.threads);
       if (code != kExitOk) return code;
     }
     const auto s = summary_of(w.folder);

@@ -37,6 +37,11 @@ const std::vector<ValidationCase>& validation_cases() {
        hydrostatic},
       {2, "dam_break_martin_moyce", "collapse of a column: front over time, both solvers",
        dam_break_martin_moyce},
+      {3, "absorptance_nist_316l",
+       "spot welds of 316L: absorbed share and start of the capillary over intensity", absorptance_nist_316l,
+       absorptance_nist_316l_welds},
+      {3, "keyhole_depth_xray", "bare plates of 316L, Ti-6Al-4V, Al 6061: depth of the capillary over power",
+       keyhole_depth_xray, keyhole_depth_xray_welds},
   };
   return cases;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/listed_run.hpp"
 #include "app/validate/row.hpp"
 
 namespace meltray::app {
@@ -13,13 +14,16 @@ namespace meltray::app {
 struct Setting {
   std::filesystem::path folder;  ///< validation/<id>: case.toml, reference table
   bool small = false;            ///< the twin that takes seconds: coarser or shorter
+  std::filesystem::path out;     ///< folder of the runs that are kept (tier 3)
 };
 
 struct ValidationCase {
-  int tier;  ///< 1 analytic, 2 flow benchmarks
+  int tier;  ///< 1 analytic, 2 flow benchmarks, 3 welds against experiment
   const char* id;
   const char* summary;  ///< what is compared, one line
   Rows (*run)(const Setting& setting);
+  /// Tier 3: the welds that `run` compares, which must have run before; empty for the small twin.
+  std::vector<ListedRun> (*welds)(const Setting& setting) = nullptr;
 };
 
 /// Every validation case, cheap and basic ones first.
@@ -45,5 +49,9 @@ Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
 Rows hydrostatic(const Setting& setting);
 Rows dam_break_martin_moyce(const Setting& setting);
+Rows absorptance_nist_316l(const Setting& setting);
+Rows keyhole_depth_xray(const Setting& setting);
+std::vector<ListedRun> absorptance_nist_316l_welds(const Setting& setting);
+std::vector<ListedRun> keyhole_depth_xray_welds(const Setting& setting);
 
 }  // namespace meltray::app

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "app/repository.hpp"
 #include "app/validate/cases.hpp"
@@ -16,8 +17,8 @@ namespace meltray::app {
 namespace {
 
 void check_choice(const ValidateArguments& a) {
-  if (a.tier && *a.tier != 1 && *a.tier != 2)
-    throw UsageError(fmt::format("validate: --tier: found {}; allowed 1 or 2", *a.tier));
+  if (a.tier && (*a.tier < 1 || *a.tier > 3))
+    throw UsageError(fmt::format("validate: --tier: found {}; allowed 1, 2 or 3", *a.tier));
   if ((a.all ? 1 : 0) + (a.tier ? 1 : 0) + (a.ids.empty() ? 0 : 1) > 1)
     throw UsageError("validate: found more than one of IDs, --all and --tier; allowed one of them");
   if (!a.all && !a.tier && a.ids.empty() && !a.small && !a.list)
@@ -35,13 +36,33 @@ std::vector<const ValidationCase*> selected(const ValidateArguments& arguments) 
                                    fmt::join(known, ", "), nearest_name(id, known)));
   const auto wanted = [&](const ValidationCase& c) {
     if (arguments.tier) return c.tier == *arguments.tier;
+    if (arguments.all) return c.tier <= 2;
     return arguments.ids.empty() ||
            std::find(arguments.ids.begin(), arguments.ids.end(), c.id) != arguments.ids.end();
   };
   std::vector<const ValidationCase*> out;
   for (const ValidationCase& c : validation_cases())
     if (wanted(c)) out.push_back(&c);
+  for (const ValidationCase* c : out)
+    if ((arguments.commands || arguments.finished) && (!c->welds || arguments.small))
+      throw UsageError(fmt::format("validate: --commands and --finished: found {}{}; allowed welds of tier 3",
+                                   c->id, arguments.small ? " with --small" : ""));
   return out;
+}
+
+/// Does the welds of a case that are not done, or prints their commands. Returns an exit code.
+int work_off(const ValidationCase& c, const Setting& setting, const ValidateArguments& arguments) {
+  if (!c.welds || arguments.finished) return kExitOk;
+  for (const ListedRun& weld : c.welds(setting)) {
+    if (reached(weld, summary_of(weld.folder))) continue;
+    if (arguments.commands) {
+      fmt::print("{}\n", command_of(weld));
+      continue;
+    }
+    fmt::print(stderr, "{}\n", weld.folder.string());
+    if (const int code = carry_out(weld, arguments.threads); code != kExitOk) return code;
+  }
+  return kExitOk;
 }
 
 /// A case that breaks down has failed; the others go on.
@@ -69,14 +90,18 @@ int validate(const ValidateArguments& arguments) {
   const auto folder = repository_folder("validation", "MELTRAY_VALIDATION");
   const KnownFailures known(folder / "known_failures.toml");
   Rows all;
-  print_header();
+  if (!arguments.commands) print_header();
   for (const ValidationCase* c : cases) {
-    Rows rows = run_case(*c, {folder / c->id, arguments.small});
+    const Setting setting{folder / c->id, arguments.small, arguments.out / c->id};
+    if (const int code = work_off(*c, setting, arguments); code != kExitOk) return code;
+    if (arguments.commands) continue;
+    Rows rows = run_case(*c, setting);
     known.mark(rows);
     print_rows(rows);
     all.insert(all.end(), rows.begin(), rows.end());
     if (arguments.json) write_json(*arguments.json, all);
   }
+  if (arguments.commands) return kExitOk;
   const auto failed = std::count_if(all.begin(), all.end(), [](const Row& r) { return !r.passed(); });
   const auto expected = std::count_if(all.begin(), all.end(),
                                       [](const Row& r) { return !r.passed() && !r.known_failure.empty(); });

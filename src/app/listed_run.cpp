@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "app/listed_run.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/schedule.hpp"
+#include "meltray/app/commands.hpp"
+#include "meltray/core/errors.hpp"
+#include "meltray/observe/run_folder.hpp"
+
+namespace meltray::app {
+
+std::string command_of(const ListedRun& r) {
+  std::string text =
+      fmt::format("meltray run {} --out {} --until {}", r.case_file.string(), r.folder.string(), r.until);
+  for (const auto& s : r.set) text += " --set " + s;
+  return text;
+}
+
+nlohmann::json summary_of(const std::filesystem::path& folder) {
+  std::ifstream file(folder / "summary.json");
+  return file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+}
+
+bool reached(const ListedRun& r, const nlohmann::json& summary) {
+  return summary.is_object() && summary.value("time_s", 0.0) >= r.until * (1 - kSameTime);
+}
+
+int carry_out(const ListedRun& r, int threads) {
+  try {
+    if (observe::is_run_folder(r.folder)) {
+      ResumeArguments again;
+      again.run_folder = r.folder;
+      again.until = r.until;
+      again.threads = threads;
+      again.quiet = true;
+      return resume(again);
+    }
+    RunArguments first;
+    first.case_file = r.case_file;
+    first.out = r.folder;
+    first.set = r.set;
+    first.until = r.until;
+    first.threads = threads;
+    first.quiet = true;
+    return run(first);
+  } catch (const NumericalFailure& e) {
+    fmt::print("{}: {}\n", r.folder.filename().string(), e.what());
+    return kExitOk;
+  }
+}
+
+}  // namespace meltray::app

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace meltray::app {
+
+/// One run of a list that may be worked off here, one after the other and with interruptions, or elsewhere by
+/// its command.
+struct ListedRun {
+  std::filesystem::path case_file, folder;
+  std::vector<std::string> set;
+  double until = 0;  ///< [s]
+};
+
+/// The command line that does the run.
+std::string command_of(const ListedRun& run);
+
+/// summary.json of a run folder, or null where there is none.
+nlohmann::json summary_of(const std::filesystem::path& folder);
+
+/// Whether the run stands at its end.
+bool reached(const ListedRun& run, const nlohmann::json& summary);
+
+/// Runs or continues it and returns an exit code. A numerical failure is printed, stays in the run's folder
+/// and counts as done.
+int carry_out(const ListedRun& run, int threads);
+
+}  // namespace meltray::app

@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Tier 3 of the validation from outside: the list of welds, what is taken off it, and what finished ones are worth.
+
+usage: welds_test.py PROGRAM [unittest options]
+"""
+import json
+
+from meltray_runner import Scratch, main, meltray
+
+
+class Welds(Scratch):
+    def validate(self, *options):
+        return meltray("validate", "keyhole_depth_xray", "--out", self.folder / "runs", *options)
+
+    def finished(self, name, depth_m):
+        """A run folder as a weld leaves it, with one depth from beginning to end."""
+        folder = self.folder / "runs" / "keyhole_depth_xray" / name
+        folder.mkdir(parents=True)
+        (folder / "summary.json").write_text(json.dumps({"time_s": 1e-3, "wall_seconds": 1.0}), encoding="utf-8")
+        (folder / "history.csv").write_text(f"time_s,capillary_depth_m\n0,{depth_m}\n1e-3,{depth_m}\n", encoding="utf-8")
+
+    def commands(self):
+        done = self.validate("--commands")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.splitlines()
+        for line in lines:
+            self.assertTrue(line.startswith("meltray run "))
+        return lines
+
+    def test_finished_welds_leave_the_list(self):
+        every = self.commands()
+        self.assertEqual(len(every), len(set(every)))
+        self.finished("ss316-0.6m-s-208w", 100e-6)
+        left = self.commands()
+        self.assertEqual(len(left), len(every) - 1)
+        self.assertEqual([line for line in every if "ss316-0.6m-s-208w" in line], list(set(every) - set(left)))
+
+    def test_depths_and_slopes_are_judged(self):
+        self.assertIn("0 of 0 rows", self.validate("--finished").stdout)
+        self.finished("ss316-0.6m-s-208w", 100e-6)  # measured: 93.6 um
+        done = self.validate("--finished")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertIn("1 of 1 rows passed", done.stdout)
+        self.finished("ss316-0.6m-s-520w", 190e-6)  # measured: 380 um; slope 0.29 of 0.92 mm/kW
+        done = self.validate("--finished")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("2 of 4 rows passed, 2 failed", done.stdout)
+
+    def test_only_welds_have_commands(self):
+        done = meltray("validate", "fresnel_angles", "--commands")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("fresnel_angles", done.stderr)
+
+
+if __name__ == "__main__":
+    main()

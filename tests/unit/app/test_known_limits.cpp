@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+
+#include "app/known_limits.hpp"
+
+using namespace meltray;
+using namespace meltray::app;
+
+TEST_CASE("the usual settings are within the known limits") {
+  scene::Scene s;
+  s.terms.interface_viscosity = s.terms.buoyancy = true;
+  CHECK(beyond_known_limits(s).empty());
+  s.laser.emplace();
+  CHECK(beyond_known_limits(s).empty());
+}
+
+TEST_CASE("long steps are named, earlier for a weld than for a pool") {
+  scene::Scene s;
+  s.time.cfl_capillary *= 6;
+  CHECK(beyond_known_limits(s).empty());
+  s.laser.emplace();
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("time.cfl_capillary: 6 times"));
+  s.time.integrator.fixed_step = 1e-6;  // the limits do not act
+  CHECK(beyond_known_limits(s).empty());
+  s.laser.reset();
+  s.time.integrator.fixed_step = 0;
+  s.time.cfl_capillary *= 2;
+  CHECK(beyond_known_limits(s).size() == 1);
+}
+
+TEST_CASE("stiff interfaces under the projection in every stage are named") {
+  scene::Scene s;
+  s.terms.interface_viscosity = true;
+  s.flow.interface_viscosity_solid = 500;
+  CHECK(beyond_known_limits(s).empty());
+  s.flow.projection = scene::Projection::stage;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.interface_viscosity_*: 500"));
+  s.terms.interface_viscosity = false;
+  CHECK(beyond_known_limits(s).empty());
+}
