@@ -183,8 +183,9 @@ const std::vector<std::string>& face_names() {
 const std::vector<Key>& all_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (auto section : {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, solver_keys,
-                         flow_keys, surface_keys, heat_keys, laser_keys, time_keys, output_keys})
+    for (auto section :
+         {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, solver_keys, elastic_keys,
+          flow_keys, surface_keys, heat_keys, laser_keys, time_keys, output_keys})
       append(all, section());
     return all;
   }();

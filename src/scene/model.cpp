@@ -66,6 +66,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   divergence_time = kDivergenceCrossings * crossing;
   partitions = initial_partitions(scene.time);
   if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) weak_.emplace(scene);
+  if (is_elastic(scene)) elastic_ = elastic_solid(scene);
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
@@ -105,7 +106,7 @@ std::size_t Model::enthalpy_begin() const {
 }
 
 std::size_t Model::crossings_begin() const {
-  return enthalpy_begin() + stage.heated.size();
+  return elastic_begin() + elastic_size();
 }
 
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const {
@@ -133,6 +134,7 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
   add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
   if (weakly_compressible()) add("density", 2 * dim * nm, nm, 0.0, time.atol_density * constants_.density);
   add("enthalpy", h, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
+  if (has_elastic_solid()) pack_elastic(y, fields);
   add("crossings", crossings_begin(), terms::Crossings::kCount, 0.0, 1e100);
 }
 
@@ -159,16 +161,19 @@ void Model::unpack(const double* y) {
   const double* const h = y + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { patch.h[stage.heated[k]] = h[k]; });
+  if (has_elastic_solid()) unpack_elastic(y);
 }
 
 void Model::evaluate(double t, const double* y) {
-  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin();
+  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin(),
+                    e = elastic_begin(), ne = stage.elastic.size();
   const bool known = last_y_.size() == n;
   const auto same = [&](std::size_t begin, std::size_t end) {
     return known && std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
   };
-  const bool still = same(0, constants_.dim * nm), same_h = same(h, n);
-  if (geometry_valid_ && still && same(constants_.dim * nm, h) && same_h && t == stage.t) return;
+  const bool still = same(0, constants_.dim * nm) && same(e, e + constants_.dim * ne), same_h = same(h, e);
+  if (geometry_valid_ && still && same(constants_.dim * nm, h) && same_h && same(e, n) && t == stage.t)
+    return;
   // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
   // coefficients that rest on them are frozen at the start of the step, and renewed for the projection. A
   // weakly compressible step is so short that only the pairs of moving particles and pressures are renewed in
@@ -181,10 +186,12 @@ void Model::evaluate(double t, const double* y) {
 
   if (!same_pairs) {
     const auto timer = timers_.measure(Part::neighbours);
-    if (weakly_compressible() && geometry_valid_)
+    if (weakly_compressible() && geometry_valid_) {
       pairs.refresh(patch, constants_.kernel, stage.moving);
-    else
+      pairs.refresh(patch, constants_.kernel, stage.elastic);
+    } else {
       pairs.refresh(patch, constants_.kernel);
+    }
   }
   const auto update_temperature = [&](Index i) {
     stage.temperature[i] = constants_.material.temperature(patch.h[i]);
@@ -195,6 +202,7 @@ void Model::evaluate(double t, const double* y) {
     parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                  [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
   if (weakly_compressible()) weak_->state.update(stage);
+  if (has_elastic_solid()) elastic_->update(stage);
   if (needs_surface() && !same_surface) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);
@@ -255,6 +263,7 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
   double* const dh = rate + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { dh[k] = heating_[stage.heated[k]]; });
+  if (has_elastic_solid()) finish_elastic_rates(y, rate, transport);
   crossings.write(rate + crossings_begin());
 }
 

@@ -61,8 +61,10 @@ void Simulation::Impl::select() {
     if (everything)
       selector.select_all(particles, model.patch);
     else
-      selector.select_near_melt(
-          particles, laser ? std::span<const Index>(laser->lit()) : std::span<const Index>{}, model.patch);
+      selector.select_near_melt(particles,
+                                laser ? std::span<const Index>(laser->lit()) : std::span<const Index>{},
+                                model.patch, 1 + std::max<Index>(1, elastic_reach()));
+    if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, elastic_reach());
     const Index n = model.patch.size();
     extra.assign(n, 0);
     const bool heats =
@@ -74,7 +76,7 @@ void Simulation::Impl::select() {
       for (Index i = 0; i < n; ++i) extra[i] = (in_state[model.patch.global[i]] & 2) != 0;
       for (Index i : laser->lit()) in_state[i] &= 1;
     }
-    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, extra);
+    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, list_rows());
     ++counters.list_builds;
     lists_valid = true;
     deposited = false;
@@ -139,14 +141,15 @@ StepInfo Simulation::Impl::step(double t_stop) {
   time = report.t;
   last_dt = report.dt;
   book(report);
+  if (model.has_elastic_solid()) selector.follow(particles, model.patch);
   write_back(model.patch, particles);
   finish_patch();
   change_phases(report.dt);
   if (model.flows()) remove_escaped();
   if (scene.heat.bulk_interval > 0 && scene.terms.conduction) exchange_bulk(time);
-  if (model.flows() && !model.stage.moving.empty()) {
+  if (model.flows() && !(model.stage.moving.empty() && model.stage.elastic.empty())) {
     const double motion = report.dt * parallel_max(static_cast<std::ptrdiff_t>(model.stage.moving.size()),
-                                                   0.0, [&](std::ptrdiff_t k) {
+                                                   model.elastic_speed(), [&](std::ptrdiff_t k) {
                                                      const Index i = model.stage.moving[k];
                                                      double v2 = 0;
                                                      for (int c = 0; c < constants.dim; ++c)
@@ -182,6 +185,8 @@ void Simulation::Impl::check(const StepReport& report) {
       first = i;
       break;
     }
+  for (Index i : model.stage.elastic)
+    if (first < 0 && bad(i)) first = i;
   for (Index i : model.stage.heated)
     if (first < 0 && !(std::abs(p.h[i]) < kHottest)) first = i;
   if (first < 0) return;
@@ -257,6 +262,7 @@ void Simulation::Impl::change_phases(double) {
       particles.phase[g] = static_cast<std::uint8_t>(Phase::liquid);
       particles.flags[g] |= kWasLiquid;
       if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
+      if (model.has_elastic_solid()) release(g);
       lists_valid = lists_valid && !model.flows();
     } else if (model.patch.liquid[i] && h <= solidus) {
       bool touches = !model.flows();
@@ -268,12 +274,14 @@ void Simulation::Impl::change_phases(double) {
       if (!touches) continue;
       for (int c = 0; c < constants.dim; ++c) {
         momentum.phase_change[c] -= particles.mass[g] * particles.v[c][g];
-        particles.v[c][g] = 0;
+        if (!model.has_elastic_solid()) particles.v[c][g] = 0;
       }
       selector.solidified(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::solid);
       particles.flags[g] |= kResolidified;
-      if (model.weakly_compressible()) particles.density[g] = constants.density;
+      if (model.weakly_compressible())
+        particles.density[g] = model.density_of_solid(particles.temperature[g]);
+      if (model.has_elastic_solid()) particles.flags[g] |= kMobile;
       lists_valid = lists_valid && !model.flows();
     }
   }

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/terms/elastic.hpp"
+
+#include <cmath>
+
+#include "meltray/sph/renormalise.hpp"
+
+namespace meltray::terms {
+
+namespace {
+
+template <int D>
+using Matrix = Eigen::Matrix<double, D, D>;
+
+/// Below this determinant of the moments a particle has hardly neighbours (a corner of a cube has 0.03) and
+/// its gradient stays as it is.
+constexpr double kWellPosed = 0.01;
+
+template <int D>
+Matrix<D> correction(const Matrix<D>& moment, double second_moment) {
+  if (moment.determinant() < kWellPosed) return Matrix<D>::Identity() / second_moment;
+  return moment.inverse();
+}
+
+template <int D>
+Matrix<D> deviator(const Patch& patch, Index i) {
+  Matrix<D> s;
+  int n = 0;
+  for (int a = 0; a < D; ++a)
+    for (int b = a; b < D; ++b) s(a, b) = s(b, a) = patch.stress[n++][i];
+  return s;
+}
+
+/// -epsilon times the tensile part of a stress in its principal frame.
+template <int D>
+Matrix<D> repulsion(const Matrix<D>& sigma, double epsilon) {
+  Eigen::SelfAdjointEigenSolver<Matrix<D>> principal;
+  principal.computeDirect(sigma);
+  const Eigen::Matrix<double, D, 1> tension = principal.eigenvalues().cwiseMax(0.0);
+  const auto& frame = principal.eigenvectors();
+  return -epsilon * frame * tension.asDiagonal() * frame.transpose();
+}
+
+/// Mean of (W / W(dx))^4 over the pairs of a lattice, each with its share -F x^2 in a stress: the artificial
+/// stress less this mean pushes near neighbours apart without making the lattice softer.
+template <int D, class Kernel>
+double mean_repulsion(const SceneConstants& k) {
+  const double inverse_h = 1 / k.smoothing, unit = Kernel::w(k.spacing, inverse_h);
+  const int reach = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing));
+  double sum = 0, all = 0;
+  for (int a = -reach; a <= reach; ++a)
+    for (int b = -reach; b <= reach; ++b)
+      for (int c = D == 3 ? -reach : 0; c <= (D == 3 ? reach : 0); ++c) {
+        const double r = k.spacing * std::sqrt(a * a + b * b + c * c);
+        const double share = -Kernel::f(r, inverse_h) * a * a, f = Kernel::w(r, inverse_h) / unit;
+        sum += share * f * f * f * f;
+        all += share;
+      }
+  return sum / all;
+}
+
+/// Moments and velocity gradient before renormalisation of one elastic particle.
+template <int D>
+struct Gradients {
+  Matrix<D> moment, velocity;
+};
+
+/// What a wall adds to a gradient that took its dummies' own velocity: velocities that go on linearly behind
+/// the face, for the components that the face holds; the distance of the particle is kept above half a
+/// spacing.
+template <int D>
+void extend_behind_walls(const Stage& s, Index i, Matrix<D>& gradient) {
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    if (!s.patch->wall[p.j]) return;
+    const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
+    const double behind = std::abs(s.patch->x[face.axis][p.j] - face.plane);
+    const double before =
+        std::max(std::abs(s.patch->x[face.axis][i] - face.plane), 0.5 * s.constants->spacing);
+    for (int a = 0; a < D; ++a) {
+      const double more = a == face.axis || face.no_slip ? behind / before : -1.0;
+      const double u = s.patch->v[a][i] - s.patch->v[a][p.j];
+      for (int b = 0; b < D; ++b) gradient(a, b) -= s.volume[p.j] * p.f * more * u * p.x[b];
+    }
+  });
+}
+
+template <int D>
+Gradients<D> gradients(const Stage& s, Index i, const double* volume) {
+  constexpr int kMoments = symmetric_count(D);
+  const ConstField v = view(static_cast<const Patch*>(s.patch)->v);
+  Gradients<D> out;
+  const auto second = s.pairs->sum_row<D, kMoments>(i, [&](const sph::Pair<D>& p) {
+    const double vf = -volume[p.j] * p.f;
+    std::array<double, kMoments> sum;
+    int n = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) sum[n++] = vf * p.x[a] * p.x[b];
+    return sum;
+  });
+  int n = 0;
+  for (int a = 0; a < D; ++a) {
+    const double* const va = v[a];
+    const double vi = va[i];
+    const auto row = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
+      const double vf = -volume[p.j] * p.f * (vi - va[p.j]);
+      std::array<double, D> sum;
+      for (int b = 0; b < D; ++b) sum[b] = vf * p.x[b];
+      return sum;
+    });
+    for (int b = 0; b < D; ++b) out.velocity(a, b) = row[b];
+    for (int b = a; b < D; ++b) out.moment(a, b) = out.moment(b, a) = second[n++];
+  }
+  if (s.pairs->next_to_wall()[i]) extend_behind_walls<D>(s, i, out.velocity);
+  return out;
+}
+
+}  // namespace
+
+double ElasticSolid::reference_density(const SceneConstants& constants, double temperature) const {
+  return constants.density * std::exp(3 * expansion * (constants.melting_temperature() - temperature));
+}
+
+double ElasticSolid::pressure(double density, double reference) const {
+  return bulk_modulus * (density / reference - 1);
+}
+
+double ElasticSolid::sound_speed(double density) const {
+  return std::sqrt((bulk_modulus + 4.0 / 3 * shear_modulus) / density);
+}
+
+void ElasticSolid::update(Stage& s) const {
+  parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
+    const Index i = s.elastic[k];
+    s.volume[i] = s.patch->mass[i] / s.patch->density[i];
+  });
+}
+
+void ElasticSolid::add_rates(const Stage& s, const Rates& rates) const {
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    add_stress_rates<d>(s, rates);
+    add_acceleration<d>(s, rates.acceleration);
+  });
+}
+
+template <int D>
+void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
+  const Index n = s.size();
+  solid_volume_.resize(n);
+  traction_.resize(static_cast<std::size_t>(n) * D * D);
+  repulsion_.resize(static_cast<std::size_t>(n) * D * D);
+  parallel_for(n, [&](Index i) { solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i]; });
+  parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
+    const Index i = s.elastic[k];
+    const auto g = gradients<D>(s, i, solid_volume_.data());
+    const Matrix<D> correct = correction<D>(g.moment, s.constants->lattice.second_moment);
+    const Matrix<D> gradient = g.velocity * correct;
+    const Matrix<D> strain = 0.5 * (gradient + gradient.transpose()), spin = gradient - strain;
+    const double rho = s.patch->density[i], dilation = strain.trace();
+    const Matrix<D> stress = deviator<D>(*s.patch, i);
+    const Matrix<D> rate =
+        2 * shear_modulus * (strain - dilation / 3 * Matrix<D>::Identity()) + spin * stress - stress * spin;
+    int c = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) rates.stress[c++][i] += rate(a, b);
+    rates.density[i] -= rho * dilation;
+
+    const double p = pressure(rho, reference_density(*s.constants, s.temperature[i]));
+    const Matrix<D> sigma = stress - p * Matrix<D>::Identity();
+    const std::size_t at = static_cast<std::size_t>(i) * D * D;
+    Eigen::Map<Matrix<D>> traction(&traction_[at]), repelling(&repulsion_[at]);
+    traction = sigma * correct;
+    repelling = repulsion<D>(sigma, artificial_stress);
+  });
+}
+
+template <int D>
+void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration) const {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  const Patch& patch = *s.patch;
+  const double h = s.constants->smoothing, softening = 0.01 * h * h;
+  const double scale = 1 / s.constants->lattice.second_moment;
+  const auto tensor = [](const std::vector<double>& of, Index i) {
+    return Eigen::Map<const Matrix<D>>(&of[static_cast<std::size_t>(i) * D * D]);
+  };
+  with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+    using Kernel = decltype(kernel);
+    const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / h);
+    const double mean = mean_repulsion<D, Kernel>(*s.constants);
+    parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
+      const Index i = s.elastic[k];
+      if (patch.elastic[i] != static_cast<std::uint8_t>(Elastic::free)) return;
+      const double rho = patch.density[i], drag = viscosity * sound_speed(rho);
+      const Matrix<D> traction = tensor(traction_, i), repelling = tensor(repulsion_, i);
+      Vector force = Vector::Zero();  // per volume
+      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+        const Index j = p.j;
+        const Eigen::Map<const Vector> x(p.x.data());
+        const double vf = s.volume[j] * p.f;
+        double along = 0;
+        for (int c = 0; c < D; ++c) along += (patch.v[c][i] - patch.v[c][j]) * p.x[c];
+        // m_j over the mean density, times rho_i, because the sum is a force per volume.
+        const double approach = std::min(along, 0.0) * h / (p.r2() + softening) * patch.mass[j] * p.f * rho /
+                                (0.5 * (rho + patch.density[j]));
+        if (patch.liquid[j]) {
+          force += (melt_drag * approach - scale * vf * (patch.pressure[i] + patch.pressure[j])) * x;
+          return;
+        }
+        const double f = p.w * inverse_w, f4 = f * f * f * f - mean;
+        Matrix<D> pair = traction + f4 * repelling;
+        const WallFace* const face = patch.wall[j] ? &s.constants->faces[patch.wall[j] - 1] : nullptr;
+        if (patch.elastic[j]) {
+          pair += tensor(traction_, j) + f4 * tensor(repulsion_, j);
+        } else if (face && !face->no_slip) {
+          Matrix<D> image = pair;
+          image.row(face->axis) *= -1;
+          image.col(face->axis) *= -1;
+          pair += image;
+        } else {
+          pair *= 2;
+        }
+        force += vf * (pair * x);
+        if (!face || face->no_slip) force += drag * approach * x;
+      });
+      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho;
+      acceleration[D - 1][i] -= gravity;
+    });
+  });
+}
+
+}  // namespace meltray::terms
