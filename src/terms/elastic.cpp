@@ -41,24 +41,6 @@ Matrix<D> repulsion(const Matrix<D>& sigma, double epsilon) {
   return -epsilon * frame * tension.asDiagonal() * frame.transpose();
 }
 
-/// Mean of (W / W(dx))^4 over the pairs of a lattice, each with its share -F x^2 in a stress: the artificial
-/// stress less this mean pushes near neighbours apart without making the lattice softer.
-template <int D, class Kernel>
-double mean_repulsion(const SceneConstants& k) {
-  const double inverse_h = 1 / k.smoothing, unit = Kernel::w(k.spacing, inverse_h);
-  const int reach = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing));
-  double sum = 0, all = 0;
-  for (int a = -reach; a <= reach; ++a)
-    for (int b = -reach; b <= reach; ++b)
-      for (int c = D == 3 ? -reach : 0; c <= (D == 3 ? reach : 0); ++c) {
-        const double r = k.spacing * std::sqrt(a * a + b * b + c * c);
-        const double share = -Kernel::f(r, inverse_h) * a * a, f = Kernel::w(r, inverse_h) / unit;
-        sum += share * f * f * f * f;
-        all += share;
-      }
-  return sum / all;
-}
-
 /// Moments and velocity gradient before renormalisation of one elastic particle.
 template <int D>
 struct Gradients {
@@ -135,19 +117,12 @@ void ElasticSolid::update(Stage& s) const {
   });
 }
 
-void ElasticSolid::add_rates(const Stage& s, const Rates& rates) const {
-  sph::with_dim(s.constants->dim, [&](auto d) {
-    add_stress_rates<d>(s, rates);
-    add_acceleration<d>(s, rates.acceleration);
-  });
-}
-
 template <int D>
 void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
   const Index n = s.size();
   solid_volume_.resize(n);
-  traction_.resize(static_cast<std::size_t>(n) * D * D);
-  repulsion_.resize(static_cast<std::size_t>(n) * D * D);
+  traction_.assign(static_cast<std::size_t>(n) * D * D, 0.0);
+  repulsion_.assign(static_cast<std::size_t>(n) * D * D, 0.0);
   parallel_for(n, [&](Index i) { solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i]; });
   parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
     const Index i = s.elastic[k];
@@ -173,58 +148,7 @@ void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
   });
 }
 
-template <int D>
-void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration) const {
-  using Vector = Eigen::Matrix<double, D, 1>;
-  const Patch& patch = *s.patch;
-  const double h = s.constants->smoothing, softening = 0.01 * h * h;
-  const double scale = 1 / s.constants->lattice.second_moment;
-  const auto tensor = [](const std::vector<double>& of, Index i) {
-    return Eigen::Map<const Matrix<D>>(&of[static_cast<std::size_t>(i) * D * D]);
-  };
-  with_kernel<D>(s.constants->kernel, [&](auto kernel) {
-    using Kernel = decltype(kernel);
-    const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / h);
-    const double mean = mean_repulsion<D, Kernel>(*s.constants);
-    parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
-      const Index i = s.elastic[k];
-      if (patch.elastic[i] != static_cast<std::uint8_t>(Elastic::free)) return;
-      const double rho = patch.density[i], drag = viscosity * sound_speed(rho);
-      const Matrix<D> traction = tensor(traction_, i), repelling = tensor(repulsion_, i);
-      Vector force = Vector::Zero();  // per volume
-      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-        const Index j = p.j;
-        const Eigen::Map<const Vector> x(p.x.data());
-        const double vf = s.volume[j] * p.f;
-        double along = 0;
-        for (int c = 0; c < D; ++c) along += (patch.v[c][i] - patch.v[c][j]) * p.x[c];
-        // m_j over the mean density, times rho_i, because the sum is a force per volume.
-        const double approach = std::min(along, 0.0) * h / (p.r2() + softening) * patch.mass[j] * p.f * rho /
-                                (0.5 * (rho + patch.density[j]));
-        if (patch.liquid[j]) {
-          force += (melt_drag * approach - scale * vf * (patch.pressure[i] + patch.pressure[j])) * x;
-          return;
-        }
-        const double f = p.w * inverse_w, f4 = f * f * f * f - mean;
-        Matrix<D> pair = traction + f4 * repelling;
-        const WallFace* const face = patch.wall[j] ? &s.constants->faces[patch.wall[j] - 1] : nullptr;
-        if (patch.elastic[j]) {
-          pair += tensor(traction_, j) + f4 * tensor(repulsion_, j);
-        } else if (face && !face->no_slip) {
-          Matrix<D> image = pair;
-          image.row(face->axis) *= -1;
-          image.col(face->axis) *= -1;
-          pair += image;
-        } else {
-          pair *= 2;
-        }
-        force += vf * (pair * x);
-        if (!face || face->no_slip) force += drag * approach * x;
-      });
-      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho;
-      acceleration[D - 1][i] -= gravity;
-    });
-  });
-}
+template void ElasticSolid::add_stress_rates<2>(const Stage&, const Rates&) const;
+template void ElasticSolid::add_stress_rates<3>(const Stage&, const Rates&) const;
 
 }  // namespace meltray::terms
