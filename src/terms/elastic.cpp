@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "meltray/sph/renormalise.hpp"
+#include "terms/elastic_vectors.hpp"
 
 namespace meltray::terms {
 
@@ -67,31 +67,19 @@ void extend_behind_walls(const Stage& s, Index i, Matrix<D>& gradient) {
 }
 
 template <int D>
-Gradients<D> gradients(const Stage& s, Index i, const double* volume) {
-  constexpr int kMoments = symmetric_count(D);
-  const ConstField v = view(static_cast<const Patch*>(s.patch)->v);
-  Gradients<D> out;
-  const auto second = s.pairs->sum_row<D, kMoments>(i, [&](const sph::Pair<D>& p) {
-    const double vf = -volume[p.j] * p.f;
-    std::array<double, kMoments> sum;
-    int n = 0;
-    for (int a = 0; a < D; ++a)
-      for (int b = a; b < D; ++b) sum[n++] = vf * p.x[a] * p.x[b];
-    return sum;
+Gradients<D> gradients(const Stage& s, Index i, const double* volume, const double* velocity) {
+  Columns<D> moment = Columns<D>::Zero(), gradient = Columns<D>::Zero();
+  const Lane<D> vi = entry<Lane<D>>(velocity, i);
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    const double vf = volume[p.j] * p.f;
+    if (vf == 0) return;
+    const Lane<D> x = padded<D>(p.x), u = entry<Lane<D>>(velocity, p.j) - vi;
+    for (int b = 0; b < D; ++b) {
+      moment.col(b) -= vf * p.x[b] * x;
+      gradient.col(b) += vf * p.x[b] * u;
+    }
   });
-  int n = 0;
-  for (int a = 0; a < D; ++a) {
-    const double* const va = v[a];
-    const double vi = va[i];
-    const auto row = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-      const double vf = -volume[p.j] * p.f * (vi - va[p.j]);
-      std::array<double, D> sum;
-      for (int b = 0; b < D; ++b) sum[b] = vf * p.x[b];
-      return sum;
-    });
-    for (int b = 0; b < D; ++b) out.velocity(a, b) = row[b];
-    for (int b = a; b < D; ++b) out.moment(a, b) = out.moment(b, a) = second[n++];
-  }
+  Gradients<D> out{moment.template topRows<D>(), gradient.template topRows<D>()};
   if (s.pairs->next_to_wall()[i]) extend_behind_walls<D>(s, i, out.velocity);
   return out;
 }
@@ -121,12 +109,17 @@ template <int D>
 void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
   const Index n = s.size();
   solid_volume_.resize(n);
-  traction_.assign(static_cast<std::size_t>(n) * D * D, 0.0);
-  repulsion_.assign(static_cast<std::size_t>(n) * D * D, 0.0);
-  parallel_for(n, [&](Index i) { solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i]; });
+  velocity_.resize(static_cast<std::size_t>(n) * kWidth<D>);
+  tensors_.resize(static_cast<std::size_t>(n) * 2 * Columns<D>::SizeAtCompileTime);
+  parallel_for(n, [&](Index i) {
+    solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i];
+    auto v = entry<Lane<D>>(velocity_.data(), i);
+    v.setZero();
+    for (int c = 0; c < D; ++c) v[c] = s.patch->v[c][i];
+  });
   parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
     const Index i = s.elastic[k];
-    const auto g = gradients<D>(s, i, solid_volume_.data());
+    const auto g = gradients<D>(s, i, solid_volume_.data(), velocity_.data());
     const Matrix<D> correct = correction<D>(g.moment, s.constants->lattice.second_moment);
     const Matrix<D> gradient = g.velocity * correct;
     const Matrix<D> strain = 0.5 * (gradient + gradient.transpose()), spin = gradient - strain;
@@ -141,10 +134,12 @@ void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
 
     const double p = pressure(rho, reference_density(*s.constants, s.temperature[i]));
     const Matrix<D> sigma = stress - p * Matrix<D>::Identity();
-    const std::size_t at = static_cast<std::size_t>(i) * D * D;
-    Eigen::Map<Matrix<D>> traction(&traction_[at]), repelling(&repulsion_[at]);
-    traction = sigma * correct;
-    repelling = repulsion<D>(sigma, artificial_stress);
+    auto traction = entry<Columns<D>>(tensors_.data(), 2 * i),
+         repelling = entry<Columns<D>>(tensors_.data(), 2 * i + 1);
+    traction.setZero();
+    repelling.setZero();
+    traction.template topRows<D>() = sigma * correct;
+    repelling.template topRows<D>() = repulsion<D>(sigma, artificial_stress);
   });
 }
 

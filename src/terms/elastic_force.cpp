@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "meltray/terms/elastic.hpp"
+#include "terms/elastic_vectors.hpp"
 
 /// Forces on elastic solid: by its own stress, its artificial viscosity, walls and melt.
 namespace meltray::terms {
@@ -97,62 +98,38 @@ void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration
   weigh(s);
   const Patch& patch = *s.patch;
   const double h = s.constants->smoothing, softening = 0.01 * h * h;
-  const ConstField v = view(patch.v);
-  const double *const density = patch.density.data(), *const drag = drag_.data(),
-                      *const weight = own_weight_.data(), *const solid = solid_volume_.data(),
-                      *const tractions = traction_.data(), *const repulsions = repulsion_.data();
-  const auto& next_to_melt = s.pairs->next_to_melt();
+  const auto tensor = [&](Index i, int which) { return entry<Columns<D>>(tensors_.data(), 2 * i + which); };
   with_kernel<D>(s.constants->kernel, [&](auto kernel) {
     using Kernel = decltype(kernel);
     const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / h);
     const double mean = mean_repulsion<D, Kernel>(*s.constants);
-    const auto nearness = [=](double w) {
-      const double f = w * inverse_w, f2 = f * f;
-      return f2 * f2 - mean;
-    };
     parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
       const Index i = s.elastic[k];
       if (patch.elastic[i] != static_cast<std::uint8_t>(Elastic::free)) return;
-      const Matrix<D> traction = Eigen::Map<const Matrix<D>>(tractions + static_cast<std::size_t>(i) * D * D),
-                      repelling =
-                          Eigen::Map<const Matrix<D>>(repulsions + static_cast<std::size_t>(i) * D * D);
-      const auto own = s.pairs->template sum_row<D, 2 * D>(i, [&](const sph::Pair<D>& p) {
-        const double g = weight[p.j] * p.f, near = g * nearness(p.w);
-        std::array<double, 2 * D> out;
-        for (int c = 0; c < D; ++c) {
-          out[c] = g * p.x[c];
-          out[D + c] = near * p.x[c];
-        }
-        return out;
+      const double rho = patch.density[i];
+      const Lane<D> vi = entry<Lane<D>>(velocity_.data(), i);
+      // Sums that meet the stress of i, the artificial one with f^4, the stress of the neighbours, the drag.
+      Lane<D> own = Lane<D>::Zero(), near = own, others = own, drag = own;
+      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+        if (p.f == 0) return;
+        const Lane<D> x = padded<D>(p.x);
+        const double along = (vi - entry<Lane<D>>(velocity_.data(), p.j)).dot(x);
+        const double mean_density = 0.5 * (rho + patch.density[p.j]);
+        drag += drag_[p.j] * p.f * std::min(along, 0.0) / (mean_density * (p.r2() + softening)) * x;
+        const double f = p.w * inverse_w, f4 = f * f * f * f - mean, g = own_weight_[p.j] * p.f;
+        own += g * x;
+        near += g * f4 * x;
+        if (!patch.elastic[p.j]) return;
+        const auto traction = tensor(p.j, 0), repelling = tensor(p.j, 1);
+        for (int b = 0; b < D; ++b) others += g * p.x[b] * (traction.col(b) + f4 * repelling.col(b));
       });
-      const auto others = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-        const double g = solid[p.j] * p.f, near = nearness(p.w);
-        const double *const t = tractions + p.j * (D * D), *const r = repulsions + p.j * (D * D);
-        std::array<double, D> out;
-        for (int a = 0; a < D; ++a) {
-          double sum = 0;
-          for (int b = 0; b < D; ++b) sum += (t[b * D + a] + near * r[b * D + a]) * p.x[b];
-          out[a] = g * sum;
-        }
-        return out;
-      });
-      double vi[D];
-      for (int c = 0; c < D; ++c) vi[c] = v[c][i];
-      const double rho = density[i];
-      const auto dragged = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-        double along = 0;
-        for (int c = 0; c < D; ++c) along += (vi[c] - v[c][p.j]) * p.x[c];
-        const double g =
-            drag[p.j] * p.f * std::min(along, 0.0) / ((rho + density[p.j]) * (p.r2() + softening));
-        std::array<double, D> out;
-        for (int c = 0; c < D; ++c) out[c] = g * p.x[c];
-        return out;
-      });
-      Vector<D> force = vector<D>(others);
-      for (int b = 0; b < D; ++b) force += own[b] * traction.col(b) + own[D + b] * repelling.col(b);
+      const Matrix<D> traction = tensor(i, 0).template topRows<D>(),
+                      repelling = tensor(i, 1).template topRows<D>();
+      Vector<D> force =
+          traction * own.template head<D>() + repelling * near.template head<D>() + others.template head<D>();
       if (s.pairs->next_to_wall()[i]) force += along_slip_faces<D>(s, i, traction);
-      if (next_to_melt[i]) force += pressure_of_melt<D>(s, i);
-      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho + 2 * h * dragged[c];
+      if (s.pairs->next_to_melt()[i]) force += pressure_of_melt<D>(s, i);
+      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho + h * drag[c];
       acceleration[D - 1][i] -= gravity;
     });
   });
