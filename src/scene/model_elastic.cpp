@@ -92,8 +92,8 @@ double Model::elastic_speed() const {
 }
 
 double Model::elastic_step() const {
-  const double c = elastic_->sound_speed(constants_.density) * (1 + 0.6 * elastic_->viscosity);
-  return scene_.time.cfl_acoustic * constants_.smoothing / (c + elastic_speed());
+  return scene_.time.cfl_acoustic * constants_.smoothing /
+         (elastic_->acoustic_speed(constants_.density) + elastic_speed());
 }
 
 double Model::density_of_solid(double temperature) const {

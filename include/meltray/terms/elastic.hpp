@@ -34,6 +34,8 @@ struct ElasticSolid {
   double pressure(double density, double reference) const;
   /// Of longitudinal waves, sqrt((K + 4 G / 3) / rho) [m/s].
   double sound_speed(double density) const;
+  /// The same with what the artificial viscosity adds to it in the limit of a step, Monaghan 1989 [m/s].
+  double acoustic_speed(double density) const { return sound_speed(density) * (1 + 0.6 * viscosity); }
   /// Volumes of the elastic particles from their densities.
   void update(Stage& stage) const;
   /// d rho/dt, dS/dt and acceleration of the elastic particles.
