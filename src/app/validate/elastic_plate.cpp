@@ -81,7 +81,7 @@ Rows elastic_plate(const Setting& setting) {
                                                      : std::vector<double>{kThickness / 5, kThickness / 10};
   Rows periods, amplitudes, losses;
   for (const double spacing : spacings) {
-    const Swing swing = run(setting, spacing, setting.small ? 0.55 : 1.7);
+    const Swing swing = run(setting, spacing, setting.small ? 0.55 : 2.0);
     const double omega = frequency(start(setting)->scene().material);
     const Measured how{fmt::format("H/dx {:.0f}", kThickness / spacing), swing.seconds,
                        "thin plate, first mode"};
