@@ -1,39 +1,58 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 
+#include "meltray/core/parallel.hpp"
 #include "meltray/particles/patch.hpp"
 
 /// Solid that moves: which it is, and the cells that it moves through.
 namespace meltray {
 
-void PatchSelector::mark_elastic(Particles& particles, Patch& patch, Index reach) {
-  marked_.assign(grid_.cells(), core_.empty() ? 1 : 0);
-  for (Index cell = 0; cell < static_cast<Index>(core_.size()); ++cell)
-    if (core_[cell]) grid_.for_block(cell, reach, [&](Index k) { marked_[k] = 1; });
+Index PatchSelector::cells_across(double distance) const {
+  return static_cast<Index>(std::ceil(distance / grid_.width()));
+}
 
-  const auto x = view(static_cast<const Particles&>(particles).x);
-  for (Index i = 0; i < static_cast<Index>(particles.size()); ++i) {
-    if (!particles.has(i, kMobile) || marked_[grid_.cell(x, i)]) continue;
-    particles.flags[i] &= static_cast<std::uint8_t>(~kMobile);
-    for (int c = 0; c < particles.dim; ++c) particles.v[c][i] = 0;
-  }
+/// Liquid particles come first in their cells of the patch.
+bool PatchSelector::near_melt(const Patch& patch, Index k, Index cell, double distance) const {
+  bool near = false;
+  grid_.for_block(cell, cells_across(distance), [&](Index c) {
+    for (Index j = patch.cell_start[c]; j < patch.cell_start[c + 1] && patch.liquid[j] && !near; ++j) {
+      double r2 = 0;
+      for (int a = 0; a < patch.dim; ++a) {
+        double x = patch.x[a][k] - patch.x[a][j];
+        if (const double period = grid_.period()[a]; period > 0) x -= period * std::rint(x / period);
+        r2 += x * x;
+      }
+      near = r2 < distance * distance;
+    }
+  });
+  return near;
+}
 
+void PatchSelector::mark_elastic(Particles& particles, Patch& patch, double distance) {
+  const bool everything = core_.empty();
   const auto rank = [](Elastic e) { return static_cast<std::uint8_t>(e); };
   patch.elastic.assign(patch.size(), rank(Elastic::none));
-  for (Index cell = 0; cell < grid_.cells(); ++cell) {
+  moves_.assign(particles.size(), 0);
+  parallel_for(grid_.cells(), [&](Index cell) {
     for (Index k = patch.cell_start[cell]; k < patch.cell_start[cell + 1]; ++k) {
       const Index i = patch.global[k];
-      if (patch.liquid[k] || patch.wall[k]) continue;
-      if (!marked_[cell]) {
-        for (int c = 0; c < patch.dim; ++c) patch.v[c][k] = 0;
-      } else if (particles.has(i, kClamped)) {
-        patch.elastic[k] = rank(Elastic::clamped);
-      } else {
-        patch.elastic[k] = rank(Elastic::free);
-        particles.flags[i] |= kMobile;
-      }
+      if (patch.liquid[k] || patch.wall[k] || !(everything || near_melt(patch, k, cell, distance))) continue;
+      const bool clamped = particles.has(i, kClamped);
+      patch.elastic[k] = rank(clamped ? Elastic::clamped : Elastic::free);
+      moves_[i] = !clamped;
     }
-  }
+  });
+  parallel_for(static_cast<std::ptrdiff_t>(particles.size()), [&](std::ptrdiff_t i) {
+    if (particles.has(i, kMobile) && !moves_[i])
+      for (int c = 0; c < particles.dim; ++c) particles.v[c][i] = 0;
+    particles.flags[i] =
+        static_cast<std::uint8_t>((particles.flags[i] & ~kMobile) | (moves_[i] ? kMobile : 0));
+  });
+  parallel_for(patch.size(), [&](Index k) {
+    if (!patch.liquid[k] && !patch.wall[k] && !patch.elastic[k])
+      for (int c = 0; c < patch.dim; ++c) patch.v[c][k] = 0;
+  });
 }
 
 void PatchSelector::follow(const Particles& particles, const Patch& patch) {

@@ -91,8 +91,8 @@ std::vector<Key> top_keys() {
             .kind = Kind::word,
             .unit = "",
             .sentence =
-                "Row of the paper's Table 1: sets solver, numerical viscosity, expansion, buoyancy and "
-                "shifting where their keys are not given."};
+                "Row of the paper's Table 1: sets solver, numerical viscosity, expansion, buoyancy, "
+                "solid and shifting where their keys are not given."};
   for (const Preset& p : presets()) model.words.emplace_back(p.model);
   model.get = [](const Scene& s, int) { return Value{s.model}; };
   model.set = [](Scene& s, int, const Value& v) { s.model = *v.text(); };

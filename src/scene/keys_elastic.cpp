@@ -25,9 +25,12 @@ std::vector<Key> elastic_keys() {
       number("flow.elastic_artificial_stress", "", between(0, 1), MELTRAY_AT(flow.elastic_artificial_stress),
              "Artificial stress of elastic solid over its tensile stress: keeps particles from pairing.")
           .only_if(elastic()),
-      number("flow.elastic_depth_m", "m", at_least(0), MELTRAY_AT(flow.elastic_depth),
-             "Depth of solid around the melt that is elastic, in whole search cells and one at least; the "
-             "rest stays at its place.")
+      number("flow.elastic_depth_m", "m", above(0), MELTRAY_AT(flow.elastic_depth),
+             "Solid within this distance of the melt is elastic, the rest stays at its place.")
+          .otherwise("reach of the kernel, two smoothing lengths",
+                     [](Scene& s, int, const Document&) {
+                       s.flow.elastic_depth = 2 * s.domain.smoothing_ratio * s.domain.spacing;
+                     })
           .only_if(elastic())
           .only_if(follows),
   };

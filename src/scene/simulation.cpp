@@ -63,8 +63,8 @@ void Simulation::Impl::select() {
     else
       selector.select_near_melt(particles,
                                 laser ? std::span<const Index>(laser->lit()) : std::span<const Index>{},
-                                model.patch, 1 + std::max<Index>(1, elastic_reach()));
-    if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, elastic_reach());
+                                model.patch, patch_reach());
+    if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, scene.flow.elastic_depth);
     const Index n = model.patch.size();
     extra.assign(n, 0);
     const bool heats =

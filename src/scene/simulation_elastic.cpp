@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 
 #include "scene/simulation_impl.hpp"
 
 /// What the steps of a simulation do besides where its solid is elastic.
 namespace meltray::scene {
 
-/// Cells around those with melt in which solid moves: the ones next to them, or more. 0 without elastic
-/// solid.
-Index Simulation::Impl::elastic_reach() const {
-  if (!model.has_elastic_solid()) return 0;
-  const double cells = std::ceil(scene.flow.elastic_depth / selector.grid().width());
-  return std::max<Index>(1, static_cast<Index>(cells));
+/// Cells of the patch around those with melt: two, or one more than elastic solid reaches.
+Index Simulation::Impl::patch_reach() const {
+  if (!model.has_elastic_solid()) return 2;
+  return std::max<Index>(2, 1 + selector.cells_across(scene.flow.elastic_depth));
 }
 
 /// Rows of the pair list besides those of the melt: particles that exchange heat, and elastic solid.

@@ -55,7 +55,7 @@ struct Simulation::Impl {
   void change_phases(double dt);
   void remove_escaped();
   void exchange_bulk(double until);
-  Index elastic_reach() const;
+  Index patch_reach() const;
   const std::vector<std::uint8_t>& list_rows();
   void release(Index particle);
   double stored_energy() const;

@@ -51,9 +51,11 @@ class PatchSelector {
   void select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,
                         Index reach = 2);
 
-  /// Which solid of the patch is elastic: all of it after select_all(), else that within `reach` cells of the
-  /// cells selected around. Solid that has moved and is no longer among it comes to rest where it is.
-  void mark_elastic(Particles& particles, Patch& patch, Index reach);
+  /// Which solid of the patch is elastic: all of it after select_all(), else that within `distance` [m] of a
+  /// liquid particle; the patch then has to reach one cell farther. Solid that has moved and is no longer
+  /// among it comes to rest where it is.
+  void mark_elastic(Particles& particles, Patch& patch, double distance);
+  Index cells_across(double distance) const;
   /// Elastic solid has moved in the patch but not yet in the store: it changes cells. Call before
   /// write_back().
   void follow(const Particles& particles, const Patch& patch);
@@ -79,11 +81,13 @@ class PatchSelector {
  private:
   void fill(const Particles& particles, Patch& patch, bool with_moving = true);
   void sort_moving(const Particles& particles);
+  bool near_melt(const Patch& patch, Index k, Index cell, double distance) const;
 
   CellGrid grid_;
   std::vector<std::vector<Index>> resting_;  ///< solid and wall particles by cell, ascending
   std::vector<Index> moving_;                ///< liquid particles, ascending
   std::vector<std::uint8_t> core_, marked_;  ///< per cell; core_ empty: every cell
+  std::vector<std::uint8_t> moves_;          ///< per particle, of mark_elastic()
   std::vector<Index> moving_cell_, moving_sorted_, moving_start_;
 };
 

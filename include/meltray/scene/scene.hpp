@@ -93,7 +93,7 @@ struct Flow {
   double elastic_modulus_scale = 1;        ///< of Young's modulus of elastic solid
   double elastic_viscosity = 1;            ///< alpha of the artificial viscosity of elastic solid
   double elastic_artificial_stress = 0.3;  ///< epsilon of Gray's artificial stress
-  double elastic_depth = 0;                ///< of solid around the melt that moves [m]
+  double elastic_depth = 0;                ///< from the melt, within which solid moves [m]
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
