@@ -29,7 +29,7 @@ terms::RecoilOnset onset(RecoilOnset o) {
 }
 
 /// Time constants of the projections' corrections, in times that the flow takes to cross a spacing.
-constexpr double kDriftCrossings = 5, kDivergenceCrossings = 0.2;
+constexpr double kDriftCrossings = 7, kDivergenceCrossings = 0.2;
 
 /// What the case file says, as far as the method leaves a choice; "auto" starts explicit.
 Partitions initial_partitions(const Time& time) {
@@ -109,7 +109,7 @@ std::size_t Model::crossings_begin() const {
   return elastic_begin() + elastic_size();
 }
 
-void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const {
+void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
   const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
   const int dim = constants_.dim;
   y.resize(crossings_begin() + terms::Crossings::kCount);
@@ -123,6 +123,8 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
     for (std::size_t k = 0; k < nm; ++k) y[2 * dim * nm + k] = patch.density[stage.moving[k]];
   for (std::size_t k = 0; k < nh; ++k) y[h + k] = patch.h[stage.heated[k]];
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
+  if (has_elastic_solid()) pack_elastic(y);
+  last_y_.assign(y.begin(), y.begin() + crossings_begin());
 
   const Time& time = scene_.time;
   fields.clear();
@@ -134,13 +136,8 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) const 
   add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
   if (weakly_compressible()) add("density", 2 * dim * nm, nm, 0.0, time.atol_density * constants_.density);
   add("enthalpy", h, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
-  if (has_elastic_solid()) pack_elastic(y, fields);
+  if (has_elastic_solid()) add_elastic_fields(fields);
   add("crossings", crossings_begin(), terms::Crossings::kCount, 0.0, 1e100);
-}
-
-void Model::invalidate() {
-  geometry_valid_ = implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
-  last_y_.clear();
 }
 
 void Model::unpack(const double* y) {
@@ -164,46 +161,25 @@ void Model::unpack(const double* y) {
   if (has_elastic_solid()) unpack_elastic(y);
 }
 
-void Model::evaluate(double t, const double* y) {
-  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin(),
-                    e = elastic_begin(), ne = stage.elastic.size();
-  const bool known = last_y_.size() == n;
-  const auto same = [&](std::size_t begin, std::size_t end) {
-    return known && std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
-  };
-  const bool still = same(0, constants_.dim * nm) && same(e, e + constants_.dim * ne), same_h = same(h, e);
-  if (geometry_valid_ && still && same(constants_.dim * nm, h) && same_h && same(e, n) && t == stage.t)
-    return;
-  // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
-  // coefficients that rest on them are frozen at the start of the step, and renewed for the projection. A
-  // weakly compressible step is so short that only the pairs of moving particles and pressures are renewed in
-  // its stages.
-  const bool same_pairs = geometry_valid_ && known && (projects_steps() || still);
-  const bool same_surface = geometry_valid_ && (weakly_compressible() || same_pairs);
-  last_y_.assign(y, y + n);
+void Model::evaluate_patch(double t) {
   stage.t = t;
-  unpack(y);
-
-  if (!same_pairs) {
+  {
     const auto timer = timers_.measure(Part::neighbours);
-    if (weakly_compressible() && geometry_valid_) {
-      pairs.refresh(patch, constants_.kernel, stage.moving);
-      pairs.refresh(patch, constants_.kernel, stage.elastic);
-    } else {
-      pairs.refresh(patch, constants_.kernel);
-    }
+    pairs.refresh(patch, constants_.kernel);
   }
-  const auto update_temperature = [&](Index i) {
-    stage.temperature[i] = constants_.material.temperature(patch.h[i]);
-  };
-  if (!geometry_valid_)
-    parallel_for(stage.size(), update_temperature);
-  else if (!same_h)
-    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
-                 [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
+  parallel_for(stage.size(), [&](Index i) { update_temperature(i); });
   if (weakly_compressible()) weak_->state.update(stage);
   if (has_elastic_solid()) elastic_->update(stage);
-  if (needs_surface() && !same_surface) {
+  update_surface();
+}
+
+void Model::update_temperature(Index i) {
+  stage.temperature[i] = constants_.material.temperature(patch.h[i]);
+}
+
+/// Surface, and the coefficients that rest on it.
+void Model::update_surface() {
+  if (needs_surface()) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);
     if (scene_.terms.wetting) wetting_.turn_normals(stage);
@@ -211,11 +187,48 @@ void Model::evaluate(double t, const double* y) {
   if (weakly_compressible()) {
     const auto timer = timers_.measure(Part::pressure);
     weak_->state.extrapolate(stage);
-    if (!same_surface) update_surface_pressure();
+    update_surface_pressure();
   }
-  geometry_valid_ = true;
-  if (!same_surface || (!same_h && !projects_steps() && !weakly_compressible()))
-    implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+  implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+}
+
+void Model::evaluate(double t, const double* y) {
+  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin(),
+                    e = elastic_begin(), ne = stage.elastic.size();
+  const auto same = [&](std::size_t begin, std::size_t end) {
+    return std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
+  };
+  const bool still = same(0, constants_.dim * nm) && same(e, e + constants_.dim * ne), same_h = same(h, e);
+  if (still && same(constants_.dim * nm, h) && same_h && same(e, n) && t == stage.t) return;
+  last_y_.assign(y, y + n);
+  stage.t = t;
+  unpack(y);
+  if (!same_h)
+    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
+                 [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
+
+  // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
+  // coefficients that rest on them are those of the start of the step. A weakly compressible step is so short
+  // that only the pairs of moving particles and pressures are renewed in its stages.
+  if (weakly_compressible()) {
+    if (!still) {
+      const auto timer = timers_.measure(Part::neighbours);
+      pairs.refresh(patch, constants_.kernel, stage.moving);
+      if (has_elastic_solid()) pairs.refresh(patch, constants_.kernel, stage.elastic);
+    }
+    weak_->state.update(stage);
+    if (has_elastic_solid()) elastic_->update(stage);
+    const auto timer = timers_.measure(Part::pressure);
+    weak_->state.extrapolate(stage);
+  } else if (!projects_steps()) {
+    if (!still) {
+      const auto timer = timers_.measure(Part::neighbours);
+      pairs.refresh(patch, constants_.kernel);
+      update_surface();
+    } else if (!same_h) {
+      implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+    }
+  }
 }
 
 /// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure needs it.
@@ -239,6 +252,7 @@ terms::Rates Model::cleared_rates() {
   const Index n = stage.size();
   for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(n, 0.0);
   heating_.assign(n, 0.0);
+  counted_force_ = Vec3::Zero();
   return {view(acceleration_), heating_.data()};
 }
 
@@ -278,6 +292,13 @@ Vec3 Model::total_force() const {
   return sum;
 }
 
+/// What has been added to the total force since the last call [N].
+Vec3 Model::force_gained() {
+  const Vec3 before = counted_force_;
+  counted_force_ = total_force();
+  return counted_force_ - before;
+}
+
 /// The operator of one side, assembled for the present stage.
 terms::ViscousOperator& Model::viscous_operator(bool implicit_part) {
   auto& op = implicit_part ? viscous_implicit_ : viscous_explicit_;
@@ -296,17 +317,17 @@ void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
 void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
   if (viscous(implicit_part).any()) {
     add_viscous(implicit_part, rates.acceleration);
-    crossings.viscosity = total_force();
+    crossings.viscosity = force_gained();
   }
   if (implicit_part) return;
   const auto timer = timers_.measure(Part::forces);
-  Vec3 before = total_force();
-  buoyancy_.add_acceleration(stage, rates.acceleration);
-  crossings.gravity = total_force() - before;
+  if (scene_.terms.gravity || scene_.terms.buoyancy) {
+    buoyancy_.add_acceleration(stage, rates.acceleration);
+    crossings.gravity = force_gained();
+  }
   if (!scene_.terms.marangoni) return;
-  before = total_force();
   marangoni_.add_acceleration(stage, rates.acceleration);
-  crossings.surface = total_force() - before;
+  crossings.surface = force_gained();
 }
 
 void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
@@ -337,9 +358,8 @@ void Model::explicit_rate(double t, const double* y, double* rate) {
     if (shifting_.coefficient > 0) {
       const auto timer = timers_.measure(Part::forces);
       for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
-      const Vec3 before = total_force();
       shifting_.add_rates(stage, view(transport_), rates.acceleration);
-      crossings.shifting = total_force() - before;
+      crossings.shifting = force_gained();
     }
     if (weakly_compressible())
       add_pressure_rates(rates, crossings);
@@ -359,25 +379,57 @@ void Model::implicit_rate(double t, const double* y, double* rate) {
   finish_rates(y, rate, crossings, false);
 }
 
+/// Solves v - gamma A(v) = known for the velocities of the moving particles, one component after the other in
+/// `known` and `v`, which holds the start; resting neighbours have the velocities `resting`. Adds gamma times
+/// the total force to `impulse`. False without convergence.
+bool Model::solve_viscous(double gamma, const double* known, const Components& resting, double* v,
+                          Vec3& impulse) {
+  const auto timer = timers_.measure(Part::viscosity);
+  const auto nm = static_cast<std::ptrdiff_t>(stage.moving.size());
+  for (int c = 0; c < constants_.dim; ++c) {
+    solve_b_[c].resize(stage.size());
+    solve_x_[c] = resting[c];
+    parallel_for(nm, [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      solve_b_[c][i] = known[c * nm + k];
+      solve_x_[c][i] = v[c * nm + k];
+    });
+  }
+  const terms::ViscousSolve result =
+      viscous_operator(true).solve(stage, gamma, view(static_cast<const Components&>(solve_b_)),
+                                   view(solve_x_), scene_.time.linear_tolerance, kLinearIterations);
+  counters->viscous_iterations += result.iterations;
+  for (int c = 0; c < constants_.dim; ++c)
+    parallel_for(nm, [&](std::ptrdiff_t k) { v[c * nm + k] = solve_x_[c][stage.moving[k]]; });
+  impulse += result.impulse;
+  return result.converged;
+}
+
+bool Model::solve_linear(double t, double gamma, const double* known, double* z) {
+  evaluate(t, known);  // all but velocities are known
+  const std::size_t nm = stage.moving.size(), n = crossings_begin(), v = constants_.dim * nm;
+  guess_.assign(z + v, z + 2 * v);
+  std::copy(known, known + n + terms::Crossings::kCount, z);
+  if (nm == 0) return true;
+  std::copy(guess_.begin(), guess_.end(), z + v);
+  terms::Crossings crossings = terms::Crossings::read(known + n);
+  const bool converged = solve_viscous(gamma, known + v, patch.v, z + v, crossings.viscosity);
+  crossings.write(z + n);
+  return converged;
+}
+
 bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
   evaluate(t, y);
   const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
   const int dim = constants_.dim;
   if (nm > 0 && viscous(true).any()) {
-    const auto timer = timers_.measure(Part::viscosity);
-    for (int c = 0; c < dim; ++c) {
-      solve_b_[c].assign(stage.size(), 0.0);
-      solve_x_[c].assign(stage.size(), 0.0);
-      for (std::size_t k = 0; k < nm; ++k)
-        solve_b_[c][stage.moving[k]] = solve_x_[c][stage.moving[k]] = b[(dim + c) * nm + k];
-    }
-    const int iterations =
-        viscous_operator(true).solve(stage, gamma, view(static_cast<const Components&>(solve_b_)),
-                                     view(solve_x_), scene_.time.linear_tolerance, kLinearIterations);
-    if (iterations < 0) return false;
-    counters->viscous_iterations += iterations;
-    for (int c = 0; c < dim; ++c)
-      for (std::size_t k = 0; k < nm; ++k) b[(dim + c) * nm + k] = solve_x_[c][stage.moving[k]];
+    double* const change = b + dim * nm;
+    const std::vector<double>& known = guess_;
+    guess_.assign(change, change + dim * nm);
+    std::fill(change, change + dim * nm, 0.0);
+    for (int c = 0; c < dim; ++c) at_rest_[c].assign(stage.size(), 0.0);
+    Vec3 impulse = Vec3::Zero();  // Newton's method books the force of the rate itself
+    if (!solve_viscous(gamma, known.data(), at_rest_, change, impulse)) return false;
   }
   const bool losses = (scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses;
   const bool conducts = scene_.terms.conduction && partitions.conduction;

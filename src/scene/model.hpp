@@ -52,16 +52,16 @@ class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
 
-  /// Copies the patch into y and describes its fields. The stage must have been prepared for the patch.
-  void pack(std::vector<double>& y, std::vector<StateField>& fields) const;
+  /// Geometry, temperatures and surface of the patch as it is. The stage must have been prepared for it.
+  void evaluate_patch(double t);
+  /// Copies the evaluated patch into y and describes its fields.
+  void pack(std::vector<double>& y, std::vector<StateField>& fields);
   /// Copies y into the patch and makes geometry, temperatures and surface those of y.
   void evaluate(double t, const double* y);
   /// Copies y into the patch, no more: the end of a step whose geometry the next one evaluates.
   void unpack(const double* y);
-  /// Forgets what evaluate() may reuse; call when the patch or its lists have changed.
-  void invalidate();
-  /// One projection over a step that has just been taken: Eq. (6) at the patch's positions; corrects v and x.
-  void project(double t, double dt, const std::vector<double>& y);
+  /// One projection over the step dt [s] that led to the evaluated patch: corrects its velocities, Eq. (6).
+  void project(double dt);
   /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06
   /// m/s^2, ...".
   std::string blame(Index i, double dt);
@@ -75,6 +75,7 @@ class Model : public OdeProblem {
   bool implicit_is_linear() const override;
   void explicit_rate(double t, const double* y, double* rate) override;
   void implicit_rate(double t, const double* y, double* rate) override;
+  bool solve_linear(double t, double gamma, const double* known, double* z) override;
   bool solve_implicit(double t, const double* y, double gamma, double* b) override;
   StepLimit stable_step(double t, const double* y) override;
   std::vector<StepLimit> step_limits();
@@ -109,12 +110,16 @@ class Model : public OdeProblem {
 
  private:
   terms::Rates cleared_rates();
+  void update_temperature(Index i);
+  void update_surface();
   void update_surface_pressure();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
   terms::ViscousOperator& viscous_operator(bool implicit_part);
   void add_viscous(bool implicit_part, const MutField& acceleration);
   void add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
+  bool solve_viscous(double gamma, const double* known, const Components& resting, double* v, Vec3& impulse);
   Vec3 total_force() const;
+  Vec3 force_gained();
   void add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
   void pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings);
   void count_solve(const solve::SolveReport& report, double t);
@@ -125,7 +130,8 @@ class Model : public OdeProblem {
   double acoustic_step(double speed) const;
   std::size_t elastic_begin() const;
   std::size_t elastic_size() const;
-  void pack_elastic(std::vector<double>& y, std::vector<StateField>& fields) const;
+  void pack_elastic(std::vector<double>& y) const;
+  void add_elastic_fields(std::vector<StateField>& fields) const;
   void unpack_elastic(const double* y);
   void add_elastic_rates(terms::Rates& rates);
   void finish_elastic_rates(const double* y, double* rate, bool transport) const;
@@ -152,11 +158,11 @@ class Model : public OdeProblem {
   Components acceleration_, transport_, all_forces_;  ///< scratch, one entry per patch particle
   SymmetricComponents stress_rate_;
   std::vector<double> heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, start_x_;
-  Components solve_b_, solve_x_;
-  std::vector<double> solve_h_b_, solve_h_x_;
+  Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
+  Components solve_b_, solve_x_, at_rest_;
+  std::vector<double> guess_, solve_h_b_, solve_h_x_;
   std::vector<double> last_y_;  ///< state that stage and patch stand for
-  bool geometry_valid_ = false, implicit_viscous_valid_ = false, explicit_viscous_valid_ = false,
-       conduction_valid_ = false;
+  bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false;
 };
 
 }  // namespace meltray::scene

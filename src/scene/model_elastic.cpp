@@ -15,10 +15,8 @@ std::size_t Model::elastic_size() const {
   return (2 * constants_.dim + 1 + symmetric_count(constants_.dim)) * stage.elastic.size();
 }
 
-void Model::pack_elastic(std::vector<double>& y, std::vector<StateField>& fields) const {
-  const std::size_t ne = stage.elastic.size();
-  if (ne == 0) return;
-  const int dim = constants_.dim, stresses = symmetric_count(dim);
+void Model::pack_elastic(std::vector<double>& y) const {
+  const int dim = constants_.dim;
   std::size_t at = elastic_begin();
   const auto copy = [&](const std::vector<double>& field) {
     for (const Index i : stage.elastic) y[at++] = field[i];
@@ -26,8 +24,13 @@ void Model::pack_elastic(std::vector<double>& y, std::vector<StateField>& fields
   for (int c = 0; c < dim; ++c) copy(patch.x[c]);
   for (int c = 0; c < dim; ++c) copy(patch.v[c]);
   copy(patch.density);
-  for (int c = 0; c < stresses; ++c) copy(patch.stress[c]);
+  for (int c = 0; c < symmetric_count(dim); ++c) copy(patch.stress[c]);
+}
 
+void Model::add_elastic_fields(std::vector<StateField>& fields) const {
+  const std::size_t ne = stage.elastic.size();
+  if (ne == 0) return;
+  const int dim = constants_.dim, stresses = symmetric_count(dim);
   const Time& time = scene_.time;
   std::size_t begin = elastic_begin();
   const auto add = [&](const char* name, std::size_t size, double rtol, double atol) {

@@ -19,9 +19,7 @@ void Model::count_solve(const solve::SolveReport& report, double t) {
   if (!report.converged) ++counters->pressure_at_limit;
 }
 
-void Model::project(double t, double dt, const std::vector<double>& y) {
-  invalidate();
-  evaluate(t, y.data());
+void Model::project(double dt) {
   update_surface_pressure();
   const auto timer = timers_.measure(Part::pressure);
   projection.assemble(stage);
@@ -34,27 +32,26 @@ void Model::project(double t, double dt, const std::vector<double>& y) {
   projection.compression(stage, other_);
   const double relax = 1 / std::max(drift_time, 2 * dt);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] = (source_[r] - relax * other_[r]) / dt;
-  count_solve(projection.solve(stage, source_, projection_options_), t);
+  count_solve(projection.solve(stage, source_, projection_options_), stage.t);
 
   for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(stage.size(), 0.0);
   projection.add_acceleration(stage, projection_options_.entry, view(acceleration_));
   const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
   pressure_impulse = dt * total_force();
-  for (int c = 0; c < constants_.dim; ++c) {
-    // x^{n+1} = x^n + dt (v^n + v^{n+1})/2 (Cummins & Rudman 1999): x already moved with v*.
+  // Positions moved with the velocities of before: with x^{n+1} = x^n + dt v^n and v^{n+1} = v^n + dt
+  // a(x^{n+1}) the two leapfrog (symplectic Euler), and the geometry of the projection is that of the next
+  // step.
+  for (int c = 0; c < constants_.dim; ++c)
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = stage.moving[k];
       patch.v[c][i] += dt * acceleration_[c][i];
-      patch.x[c][i] += 0.5 * dt * dt * acceleration_[c][i];
     });
-  }
   largest_acceleration = parallel_max(count, 0.0, [&](std::ptrdiff_t k) {
     const Index i = stage.moving[k];
     double a2 = 0;
     for (int c = 0; c < constants_.dim; ++c) a2 += acceleration_[c][i] * acceleration_[c][i];
     return stage.loose[i] ? 0.0 : std::sqrt(a2);
   });
-  invalidate();
 }
 
 void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) {
@@ -77,9 +74,8 @@ void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) 
   const double relax = 1 / (divergence_time * drift_time);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] -= relax * other_[r];
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
-  const Vec3 before = total_force();
   projection.add_acceleration(stage, projection_options_.entry, rates.acceleration);
-  crossings.pressure = total_force() - before;
+  crossings.pressure = force_gained();
 }
 
 std::string Model::blame(Index i, double dt) {
@@ -201,12 +197,16 @@ void Model::choose_partitions(double dt) {
   const auto rate_of = [&](bool implicit_part, terms::ViscousChoice part) {
     return viscous_operator(implicit_part).rate(stage, part);
   };
-  if (scene_.terms.viscosity)
-    choose(time.viscosity, partitions.viscosity, [&] { return rate_of(before.viscosity, {true, false}); });
   if (scene_.terms.interface_viscosity)
     choose(time.interface_viscosity, partitions.interface_viscosity, [&] {
       return rate_of(before.interface_viscosity, {false, true});
     });
+  // Beside an implicit interface viscosity the physical one costs least in the same operator.
+  const bool joins = scene_.terms.interface_viscosity && partitions.interface_viscosity;
+  if (scene_.terms.viscosity && time.viscosity == PartitionChoice::automatic && joins)
+    partitions.viscosity = true;
+  else if (scene_.terms.viscosity)
+    choose(time.viscosity, partitions.viscosity, [&] { return rate_of(before.viscosity, {true, false}); });
   if (partitions != before) implicit_viscous_valid_ = explicit_viscous_valid_ = false;
 }
 

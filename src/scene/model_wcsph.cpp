@@ -47,14 +47,12 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   rates.density = density_rate_.data();
   w.continuity.add_rate(stage, rates.density);
   if (w.diffusion.coefficient > 0) w.diffusion.add_rate(stage, rates.density);
-  Vec3 before = total_force();
   w.force.add_acceleration(stage, rates.acceleration);
   w.force.add_surface_force(stage, rates.acceleration);
-  crossings.pressure = total_force() - before;
+  crossings.pressure = force_gained();
   if (w.artificial.alpha > 0) {
-    before = total_force();
     w.artificial.add_acceleration(stage, rates.acceleration);
-    crossings.viscosity += total_force() - before;
+    crossings.viscosity += force_gained();
   }
   if (has_elastic_solid()) add_elastic_rates(rates);
   largest_acceleration =

@@ -16,6 +16,8 @@ constexpr int kExchangesPerBuild = 10;
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
+/// A melt particle nearer than this to a solid one solidifies on it [spacings].
+constexpr double kContact = 1.5;
 /// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
 constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
 
@@ -53,10 +55,7 @@ void Simulation::Impl::select() {
   if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     reload(particles, model.patch);
-    if (model.weakly_compressible()) {  // nothing melted: the stage stands as well
-      model.invalidate();
-      return;
-    }
+    if (model.weakly_compressible()) return;  // nothing melted: the stage stands as well
   } else {
     if (everything)
       selector.select_all(particles, model.patch);
@@ -96,11 +95,11 @@ void Simulation::Impl::select() {
       in_state_list.push_back(model.patch.global[i]);
     }
   }
-  model.invalidate();
 }
 
-StepInfo Simulation::Impl::step(double t_stop) {
-  begin();
+/// Makes the patch, its lists and its surface those of the particles in the store, and brings the light to
+/// them.
+void Simulation::Impl::prepare() {
   if (laser && laser->due(time)) {
     const auto timer = timers.measure(Part::laser);
     const bool everything = scene.heat.bulk_interval <= 0, first = laser->lit().empty();
@@ -110,59 +109,76 @@ StepInfo Simulation::Impl::step(double t_stop) {
     lists_valid = lists_valid && !first && (everything || lit == laser->lit());
   }
   select();
-  model.pack(y, fields);
-  model.evaluate(time, y.data());
+  model.evaluate_patch(time);
   if (laser && !(deposited && model.weakly_compressible())) {
     const auto timer = timers.measure(Part::laser);
     laser->deposit(model.stage, model.laser_power);
     deposited = true;
   }
-  if (counters.steps % kPartitionSteps == 0) {
-    double expected = integrator.proposed_step();
-    if (!(expected > 0)) expected = scene.time.integrator.fixed_step;
-    for (const StepLimit& limit : model.step_limits())
-      if (limit.name != "viscous" && limit.name != "thermal" && limit.name != "evaporation")
-        expected = expected > 0 ? std::min(expected, limit.seconds) : limit.seconds;
-    model.choose_partitions(expected > 0 ? expected : t_stop - time);
-  }
+  mark_surface();
+  prepared = true;
+}
 
+/// Partitions of "auto" terms for the step that is likely to come.
+void Simulation::Impl::choose_partitions(double longest) {
+  double expected = integrator.proposed_step();
+  if (!(expected > 0)) expected = scene.time.integrator.fixed_step;
+  for (const StepLimit& limit : model.step_limits())
+    if (limit.name != "viscous" && limit.name != "thermal" && limit.name != "evaporation")
+      expected = expected > 0 ? std::min(expected, limit.seconds) : limit.seconds;
+  model.choose_partitions(expected > 0 ? expected : longest);
+}
+
+/// One step: integration from a prepared patch, what happens between steps, and a new patch at the new
+/// positions. That patch serves the projection (Eq. (6) makes the velocities at the new positions solenoidal)
+/// and the step that follows: each step looks for neighbours and finds the surface once.
+StepInfo Simulation::Impl::step(double t_stop) {
+  begin();
+  if (!prepared) prepare();
+  model.pack(y, fields);
+  if (counters.steps % kPartitionSteps == 0) choose_partitions(t_stop - time);
   StepReport report;
   {
     const auto timer = timers.measure(Part::integrator);
     report = integrator.step(model, fields, time, t_stop, y);
   }
-  if (model.projects_steps())
-    model.project(report.t, report.dt, y);
-  else if (model.weakly_compressible())
-    model.unpack(y.data());
-  else
-    model.evaluate(report.t, y.data());
+  model.unpack(y.data());
   check(report);
+  prepared = false;
   time = report.t;
   last_dt = report.dt;
   book(report);
   if (model.has_elastic_solid()) selector.follow(particles, model.patch);
   write_back(model.patch, particles);
-  finish_patch();
-  change_phases(report.dt);
+  update_temperatures();
+  change_phases();
   if (model.flows()) remove_escaped();
   if (scene.heat.bulk_interval > 0 && scene.terms.conduction) exchange_bulk(time);
-  if (model.flows() && !(model.stage.moving.empty() && model.stage.elastic.empty())) {
-    const double motion = report.dt * parallel_max(static_cast<std::ptrdiff_t>(model.stage.moving.size()),
-                                                   model.elastic_speed(), [&](std::ptrdiff_t k) {
-                                                     const Index i = model.stage.moving[k];
-                                                     double v2 = 0;
-                                                     for (int c = 0; c < constants.dim; ++c)
-                                                       v2 += model.patch.v[c][i] * model.patch.v[c][i];
-                                                     return std::sqrt(v2);
-                                                   });
-    list_motion += motion;
-    if (laser) laser->add_motion(motion);
+  note_motion(report.dt);
+  prepare();
+  if (model.projects_steps()) {
+    model.project(report.dt);
+    check(report);
+    momentum.pressure += model.pressure_impulse;
+    write_back(model.patch, particles);
   }
   if (model.weakly_compressible() && counters.steps % kDensitySteps == 0)
     largest_density_variation = std::max(largest_density_variation, density_variation());
   ++counters.limiter[std::string(report.limiter)];
   return {time, report.dt, std::string(report.limiter)};
+}
+
+/// How far particles may have moved since the lists were built and the light was traced.
+void Simulation::Impl::note_motion(double dt) {
+  if (!model.flows() || (model.stage.moving.empty() && model.stage.elastic.empty())) return;
+  const auto moving = static_cast<std::ptrdiff_t>(model.stage.moving.size());
+  const double fastest = parallel_max(moving, model.elastic_speed(), [&](std::ptrdiff_t k) {
+    double v2 = 0;
+    for (int c = 0; c < constants.dim; ++c) v2 += std::pow(model.patch.v[c][model.stage.moving[k]], 2);
+    return std::sqrt(v2);
+  });
+  list_motion += dt * fastest;
+  if (laser) laser->add_motion(dt * fastest);
 }
 
 /// Stops at the first particle of the patch that is not finite or runs away, before anything reaches the
@@ -203,8 +219,7 @@ void Simulation::Impl::check(const StepReport& report) {
   const Index particle = p.global[first];
   lists_valid = false;
   select();
-  model.pack(y, fields);
-  model.evaluate(time, y.data());
+  model.evaluate_patch(time);
   for (Index i : model.stage.moving)
     if (model.patch.global[i] == particle) text += "; " + model.blame(i, report.dt);
   throw NumericalFailure(text);
@@ -226,34 +241,50 @@ void Simulation::Impl::book(const StepReport& report) {
   momentum.surface += crossed.surface;
   momentum.viscosity += crossed.viscosity;
   momentum.shifting += crossed.shifting;
-  momentum.pressure += crossed.pressure + model.pressure_impulse;
+  momentum.pressure += crossed.pressure;
   ++counters.steps;
   counters.rejected += report.rejected;
   counters.liquid_particle_steps += static_cast<std::int64_t>(model.stage.moving.size());
 }
 
-/// Output fields of the patch: temperature and who is on the surface.
-void Simulation::Impl::finish_patch() {
+void Simulation::Impl::update_temperatures() {
+  parallel_for(static_cast<std::ptrdiff_t>(model.stage.heated.size()), [&](std::ptrdiff_t k) {
+    const Index i = model.stage.heated[k];
+    particles.temperature[model.patch.global[i]] = constants.material.temperature(model.patch.h[i]);
+  });
+}
+
+/// Remembers who is on the surface, for output.
+void Simulation::Impl::mark_surface() {
   for (Index g : surface_list) on_surface[g] = 0;
   surface_list.clear();
-  for (Index i = 0; i < model.patch.size(); ++i) {
-    const Index g = model.patch.global[i];
-    if (model.stage.heat[i]) particles.temperature[g] = constants.material.temperature(model.patch.h[i]);
+  for (Index i = 0; i < model.patch.size(); ++i)
     if (model.stage.surface[i] > 0.5) {
-      on_surface[g] = 1;
-      surface_list.push_back(g);
+      on_surface[model.patch.global[i]] = 1;
+      surface_list.push_back(model.patch.global[i]);
     }
+}
+
+bool Simulation::Impl::touches_solid(Index i) const {
+  const double contact = kContact * constants.spacing;
+  for (Index k = model.pairs.begin(i); k < model.pairs.end(i); ++k) {
+    const Index j = model.pairs.neighbour(k);
+    if (model.patch.liquid[j]) continue;
+    double r2 = 0;
+    for (int c = 0; c < constants.dim; ++c)
+      r2 += std::pow(model.pairs.nearest(c, model.patch.x[c][i] - model.patch.x[c][j]), 2);
+    if (r2 < contact * contact) return true;
   }
+  return false;
 }
 
 /// Melting above the liquidus, solidification below the solidus on something solid (a drop in flight stays
 /// liquid until it touches). Frozen over a step, updated between steps.
-void Simulation::Impl::change_phases(double) {
+void Simulation::Impl::change_phases() {
   if (!scene.terms.melting) return;
   const auto timer = timers.measure(Part::phase);
   const double liquidus = constants.material.enthalpy_liquidus(),
                solidus = constants.material.enthalpy_solidus();
-  const double contact2 = 2.25 * constants.spacing * constants.spacing;
   for (Index i : model.stage.heated) {
     const Index g = model.patch.global[i];
     const double h = model.patch.h[i];
@@ -265,13 +296,7 @@ void Simulation::Impl::change_phases(double) {
       if (model.has_elastic_solid()) release(g);
       lists_valid = lists_valid && !model.flows();
     } else if (model.patch.liquid[i] && h <= solidus) {
-      bool touches = !model.flows();
-      sph::with_dim(constants.dim, [&](auto d) {
-        model.pairs.for_row<d>(i, [&](const sph::Pair<d>& p) {
-          touches = touches || (!model.patch.liquid[p.j] && p.r2() < contact2);
-        });
-      });
-      if (!touches) continue;
+      if (model.flows() && !touches_solid(i)) continue;
       for (int c = 0; c < constants.dim; ++c) {
         momentum.phase_change[c] -= particles.mass[g] * particles.v[c][g];
         if (!model.has_elastic_solid()) particles.v[c][g] = 0;

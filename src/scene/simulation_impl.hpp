@@ -48,11 +48,16 @@ struct Simulation::Impl {
 
   void begin();
   void select();
-  void finish_patch();
+  void prepare();
+  void choose_partitions(double longest);
   StepInfo step(double t_stop);
+  void note_motion(double dt);
+  void update_temperatures();
+  void mark_surface();
   void check(const StepReport& report);
   void book(const StepReport& report);
-  void change_phases(double dt);
+  bool touches_solid(Index i) const;
+  void change_phases();
   void remove_escaped();
   void exchange_bulk(double until);
   Index patch_reach() const;
@@ -75,6 +80,7 @@ struct Simulation::Impl {
   double time = 0, next_bulk = 0, bulk_from = 0, last_dt = 0, evaporative_loss = 0;
   double largest_density_variation = 0;
   bool begun = false, lists_valid = false;
+  bool prepared = false;   ///< patch and surface are those of the particles in the store
   bool deposited = false;  ///< the laser power of the present patch is known
   double list_motion = 0;
 

@@ -123,9 +123,7 @@ std::size_t Simulation::liquid_count() const {
 std::vector<StepLimit> Simulation::step_limits() {
   Impl& s = *impl_;
   s.begin();
-  s.select();
-  s.model.pack(s.y, s.fields);
-  s.model.evaluate(s.time, s.y.data());
+  if (!s.prepared) s.prepare();
   return s.model.step_limits();
 }
 
@@ -204,9 +202,8 @@ void Simulation::archive(Archive& a) {
 
   // From here on a run that goes on and one that is resumed are in the same state: everything derived is
   // rebuilt.
-  s.lists_valid = s.deposited = false;
+  s.lists_valid = s.deposited = s.prepared = false;
   s.bulk_exchanges = 0;
-  s.model.invalidate();
   if (!a.loading()) {
     s.selector = PatchSelector(s.selector.grid(), s.particles);
     return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/solve/conjugate_gradient.hpp"
 
+#include <algorithm>
+
 namespace meltray::solve {
 
 namespace {
@@ -38,35 +40,50 @@ SolveReport ConjugateGradient::solve(const SymmetricMatrix& a, const std::vector
 }
 
 int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored,
-                        std::vector<Index>& group) {
+                        std::vector<Index>& group, std::vector<Index>& scratch) {
   const Index n = a.rows();
   group.assign(n, -1);
-  thread_local std::vector<Index> stack;  // kept: a right-hand side does not allocate
-  stack.clear();
-  const auto flood = [&](Index number) {
-    while (!stack.empty()) {
-      const Index i = stack.back();
-      stack.pop_back();
+  std::vector<Index>& open = scratch;
+  open.clear();
+  for (Index i = 0; i < n; ++i)
+    if (anchored[i] > 0)
+      group[i] = 0;
+    else
+      open.push_back(i);
+  // Each open row looks for a neighbour in the anchored group: nearly all find one among their first, in a
+  // few sweeps up and down.
+  const auto joins = [&](Index i) {
+    for (Index k = a.start[i]; k < a.start[i + 1]; ++k)
+      if (group[a.column[k]] == 0 && a.off[k] != 0) return true;
+    return false;
+  };
+  for (std::size_t before = 0; before != open.size();) {
+    before = open.size();
+    std::erase_if(open, [&](Index i) {
+      if (!joins(i)) return false;
+      group[i] = 0;
+      return true;
+    });
+    std::reverse(open.begin(), open.end());
+  }
+  // What is left hangs on nothing.
+  std::sort(open.begin(), open.end());
+  const std::size_t floating = open.size();
+  int count = 0;
+  for (std::size_t f = 0; f < floating; ++f) {
+    if (group[open[f]] >= 0) continue;
+    group[open[f]] = ++count;
+    open.push_back(open[f]);
+    while (open.size() > floating) {
+      const Index i = open.back();
+      open.pop_back();
       for (Index k = a.start[i]; k < a.start[i + 1]; ++k) {
         const Index j = a.column[k];
         if (group[j] >= 0 || a.off[k] == 0) continue;
-        group[j] = number;
-        stack.push_back(j);
+        group[j] = count;
+        open.push_back(j);
       }
     }
-  };
-  for (Index i = 0; i < n; ++i)
-    if (anchored[i] > 0) {
-      group[i] = 0;
-      stack.push_back(i);
-    }
-  flood(0);
-  int count = 0;
-  for (Index i = 0; i < n; ++i) {
-    if (group[i] >= 0) continue;
-    group[i] = ++count;
-    stack.push_back(i);
-    flood(count);
   }
   return count;
 }

@@ -195,8 +195,8 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
   const auto x = view(patch.x);
   const double* const h = patch.smoothing.data();
   const Index* const j = j_.data();
-  double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
-  double *const w = w_.data(), *const f = f_.data();
+  float* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
+  float *const w = w_.data(), *const f = f_.data();
   const auto period = period_;
   const auto refresh_row = [&](Index i) {
     const double hi = h[i];
@@ -209,12 +209,12 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
       for (int c = 0; c < D; ++c) {
         double s = xi[c] - x[c][j[k]];
         if constexpr (Periodic) s -= period[c] * std::rint(s * inverse_period[c]);
-        dx[c][k] = s;
+        dx[c][k] = static_cast<float>(s);
         r2 += s * s;
       }
       const double r = std::sqrt(r2), inv_h = 2 / (hi + h[j[k]]);
-      w[k] = Kernel::w(r, inv_h);
-      f[k] = Kernel::f(r, inv_h);
+      w[k] = static_cast<float>(Kernel::w(r, inv_h));
+      f[k] = static_cast<float>(Kernel::f(r, inv_h));
     }
   };
   if (some)
@@ -227,7 +227,7 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
 std::size_t PairList::bytes() const {
   return j_.capacity() * sizeof(Index) +
          (dx_[0].capacity() + dx_[1].capacity() + dx_[2].capacity() + w_.capacity() + f_.capacity()) *
-             sizeof(double);
+             sizeof(float);
 }
 
 }  // namespace meltray::sph

@@ -173,17 +173,18 @@ double ViscousOperator::rate(const Stage& s, ViscousChoice part) const {
   });
 }
 
-int ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, const MutField& x,
-                           double tolerance, int max_iterations) const {
+ViscousSolve ViscousOperator::solve(const Stage& s, double gamma, const ConstField& b, const MutField& x,
+                                    double tolerance, int max_iterations) const {
   return s.constants->dim == 2 ? solve_in<2>(s, gamma, b, x, tolerance, max_iterations, vectors_2d_)
                                : solve_in<3>(s, gamma, b, x, tolerance, max_iterations, vectors_3d_);
 }
 
-/// (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij - (x_ij.e_ij) e_ij with resting
-/// neighbours held at zero change; symmetric positive definite.
+/// (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij - (x_ij.e_ij) e_ij; symmetric positive
+/// definite.
 template <int D>
-int ViscousOperator::solve_in(const Stage& s, double gamma, const ConstField& b, const MutField& x,
-                              double tolerance, int max_iterations, solve::CgVectors<D>& vectors) const {
+ViscousSolve ViscousOperator::solve_in(const Stage& s, double gamma, const ConstField& b, const MutField& x,
+                                       double tolerance, int max_iterations,
+                                       solve::CgVectors<D>& vectors) const {
   const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
   const double* const mass = s.patch->mass.data();
   vectors.resize(s.size());
@@ -203,9 +204,18 @@ int ViscousOperator::solve_in(const Stage& s, double gamma, const ConstField& b,
           for (int c = 0; c < D; ++c) a[c] = mass[i] * in[c][i] - gamma * a[c];
           return a;
         },
-        vectors, out, tolerance, max_iterations);
+        vectors, out, tolerance, max_iterations, solve::Relative::to_start);
   });
-  return report.converged ? report.iterations : -1;
+  // The last velocities take the viscous force of those before them, b + gamma M^-1 K x = x + M^-1 r: between
+  // moving particles momentum is then conserved to round-off, however loose the tolerance.
+  ViscousSolve result{report.iterations, report.converged};
+  for (int c = 0; c < D; ++c)
+    result.impulse[c] = parallel_sum(count, [&](std::ptrdiff_t k) {
+      const Index i = s.moving[k];
+      x[c][i] += vectors.r[c][i] / mass[i];
+      return mass[i] * (x[c][i] - b[c][i]);
+    });
+  return result;
 }
 
 }  // namespace meltray::terms

@@ -123,6 +123,31 @@ struct ArkodeDriver::Callbacks {
       return SUNLS_CONV_FAIL;
     });
   }
+
+  static SUNNonlinearSolver_Type stage_solver_type(SUNNonlinearSolver) { return SUNNONLINEARSOLVER_ROOTFIND; }
+  static int set_system(SUNNonlinearSolver, SUNNonlinSolSysFn) { return SUN_NLS_SUCCESS; }
+
+  /// Solves z - gamma f_I(t, z) = guess + data for a stage z = guess + correction.
+  static int solve_stage(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector, double,
+                         booleantype, void*) {
+    ArkodeDriver& d = self(solver->content);
+    return guarded(d, [&]() -> int {
+      double t = 0, gamma = 0;
+      N_Vector guess, z, f, data;
+      void* user;
+      d.check(ARKStepGetNonlinearSystemData(d.mem_.get(), &t, &guess, &z, &f, &gamma, &data, &user),
+              "ARKStepGetNonlinearSystemData");
+      N_VLinearSum(1.0, guess, 1.0, data, d.known_.get());
+      N_VScale(1.0, guess, z);
+      ++d.counters_.linear_solves;
+      if (d.problem_->solve_linear(t, gamma, entries(d.known_.get()), entries(z))) {
+        N_VLinearSum(1.0, z, -1.0, guess, correction);
+        return SUN_NLS_SUCCESS;
+      }
+      d.solver_failed_ = true;
+      return SUN_NLS_CONV_RECVR;
+    });
+  }
 };
 
 ArkodeDriver::ArkodeDriver(SUNContext context, VectorSpace& space, const Tableau& tableau, const Parts& parts,
@@ -175,7 +200,14 @@ void ArkodeDriver::create(SUNContext context) {
   check(ARKStepSetMaxErrTestFails(m, 1), "ARKStepSetMaxErrTestFails");
   check(ARKStepSetMaxConvFails(m, 1), "ARKStepSetMaxConvFails");
   if (!implicit_rates_) return;
+  if (parts_.implicit_is_linear)
+    create_stage_solver(context);
+  else
+    create_newton(context);
+}
 
+void ArkodeDriver::create_newton(SUNContext context) {
+  void* m = mem_.get();
   solver_.reset(SUNLinSolNewEmpty(context));
   if (solver_ == nullptr) throw NumericalFailure("time integrator: SUNLinSolNewEmpty failed");
   solver_->content = this;
@@ -184,12 +216,23 @@ void ArkodeDriver::create(SUNContext context) {
   check(ARKStepSetLinearSolver(m, solver_.get(), nullptr), "ARKStepSetLinearSolver");
   // ARKODE leaves out solves whose right-hand side is below this fraction of the tolerance; solve them all.
   check(ARKStepSetEpsLin(m, 1e-30), "ARKStepSetEpsLin");
-  if (parts_.implicit_is_linear) {
-    check(ARKStepSetLinear(m, 0), "ARKStepSetLinear");
-  } else {
-    check(ARKStepSetNonlinConvCoef(m, kNewtonFraction), "ARKStepSetNonlinConvCoef");
-    check(ARKStepSetMaxNonlinIters(m, kNewtonIterations), "ARKStepSetMaxNonlinIters");
-  }
+  check(ARKStepSetNonlinConvCoef(m, kNewtonFraction), "ARKStepSetNonlinConvCoef");
+  check(ARKStepSetMaxNonlinIters(m, kNewtonIterations), "ARKStepSetMaxNonlinIters");
+}
+
+/// A linear implicit part needs no residuals and no Jacobian: the stage is solved at once, and its rate
+/// follows from it.
+void ArkodeDriver::create_stage_solver(SUNContext context) {
+  void* m = mem_.get();
+  known_.reset(space_.take());
+  stage_solver_.reset(SUNNonlinSolNewEmpty(context));
+  if (stage_solver_ == nullptr) throw NumericalFailure("time integrator: SUNNonlinSolNewEmpty failed");
+  stage_solver_->content = this;
+  stage_solver_->ops->gettype = Callbacks::stage_solver_type;
+  stage_solver_->ops->setsysfn = Callbacks::set_system;
+  stage_solver_->ops->solve = Callbacks::solve_stage;
+  check(ARKStepSetNonlinearSolver(m, stage_solver_.get()), "ARKStepSetNonlinearSolver");
+  check(ARKStepSetDeduceImplicitRhs(m, 1), "ARKStepSetDeduceImplicitRhs");
 }
 
 void ArkodeDriver::begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) {

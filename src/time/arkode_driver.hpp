@@ -3,6 +3,7 @@
 
 #include <sundials/sundials_context.h>
 #include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_nonlinearsolver.h>
 
 #include <exception>
 #include <memory>
@@ -38,12 +39,17 @@ class ArkodeDriver : public OneStep {
   struct FreeSolver {
     void operator()(SUNLinearSolver s) const { SUNLinSolFreeEmpty(s); }
   };
+  struct FreeStageSolver {
+    void operator()(SUNNonlinearSolver s) const { SUNNonlinSolFreeEmpty(s); }
+  };
   /// Rate at (t, y) of a step, kept because ARKODE asks for it twice and again in every further attempt.
   struct StartRate {
     OwnedVector value;
     bool known = false;
   };
   void create(SUNContext context);
+  void create_newton(SUNContext context);
+  void create_stage_solver(SUNContext context);
   void check(int code, const char* call) const;
   Attempt judge(int code, N_Vector y_new);
 
@@ -53,9 +59,10 @@ class ArkodeDriver : public OneStep {
   const bool explicit_rates_, implicit_rates_;  // what ARKODE is given
   const bool estimate_error_;
   IntegratorCounters& counters_;
-  OwnedVector scratch_;
+  OwnedVector scratch_, known_;
   StartRate explicit_start_, implicit_start_;
-  std::unique_ptr<_generic_SUNLinearSolver, FreeSolver> solver_;
+  std::unique_ptr<_generic_SUNLinearSolver, FreeSolver> solver_;                // of Newton's method
+  std::unique_ptr<_generic_SUNNonlinearSolver, FreeStageSolver> stage_solver_;  // of linear problems
   std::unique_ptr<void, FreeMemory> mem_;
   std::string message_;  // ARKODE's last complaint
 

@@ -45,12 +45,18 @@ Attempt ForwardBackwardEuler::advance(double h, N_Vector y_new) {
   return {parts_.has_implicit ? solve(h, y_new) : Outcome::done};
 }
 
-/// Newton's method for y1 = y* + h f_I(t + h, y1), started from y* (which y_new holds).
+/// y1 = y* + h f_I(t + h, y1), where y_new holds y*: at once where f_I is linear, else by Newton's method
+/// from y*.
 Outcome ForwardBackwardEuler::solve(double h, N_Vector y_new) {
   N_VScale(1.0, y_new, predicted_.get());
+  if (parts_.implicit_is_linear) {
+    ++counters_.linear_solves;
+    if (!problem_->solve_linear(t_ + h, h, entries(predicted_.get()), entries(y_new)))
+      return Outcome::not_converged;
+    return all_finite(entries(y_new), space_.length()) ? Outcome::done : Outcome::not_finite;
+  }
   N_Vector d = correction_.get();
-  const int iterations = parts_.implicit_is_linear ? 1 : kNewtonIterations;
-  for (int k = 0; k < iterations; ++k) {
+  for (int k = 0; k < kNewtonIterations; ++k) {
     problem_->implicit_rate(t_ + h, entries(y_new), entries(d));
     ++counters_.implicit_evals;
     N_VLinearSum(h, d, 1.0, predicted_.get(), d);
@@ -60,7 +66,7 @@ Outcome ForwardBackwardEuler::solve(double h, N_Vector y_new) {
     if (!problem_->solve_implicit(t_ + h, entries(y_new), h, entries(d))) return Outcome::not_converged;
     N_VLinearSum(1.0, y_new, 1.0, d, y_new);
     if (!all_finite(entries(y_new), space_.length())) return Outcome::not_finite;
-    if (parts_.implicit_is_linear || N_VWrmsNorm(d, weights_) <= kNewtonFraction) return Outcome::done;
+    if (N_VWrmsNorm(d, weights_) <= kNewtonFraction) return Outcome::done;
   }
   return Outcome::not_converged;
 }

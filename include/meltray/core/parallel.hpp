@@ -32,25 +32,27 @@ void parallel_for(std::ptrdiff_t n, F&& f) {
   for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
 }
 
-/// Reductions run over fixed blocks that are combined in order: bitwise independent of the number of threads.
-inline constexpr std::ptrdiff_t kReductionBlock = 1024;
-/// A sum over fewer items is cheaper than waking the other threads; the blocks, and so the bits, are the
-/// same.
-inline constexpr std::ptrdiff_t kSerialReductionBelow = 8 * kReductionBlock;
+/// Reductions run over fixed blocks of items that are combined in order: bitwise independent of the number of
+/// threads. Below `serial_below` items waking the other threads costs more than it gains.
+struct Blocks {
+  std::ptrdiff_t size, serial_below;
+};
+/// For bodies of a few operations, and for those as heavy as a row of a matrix.
+inline constexpr Blocks kLight{1024, 8 * 1024}, kRows{64, kSerialBelow};
 
 /// Reduces block results `block(begin, end)` with `combine(total, part)` in fixed order.
 template <class T, class Block, class Combine>
-T parallel_reduce(std::ptrdiff_t n, T init, Block&& block, Combine&& combine) {
-  const std::ptrdiff_t blocks = (n + kReductionBlock - 1) / kReductionBlock;
-  if (blocks <= 1) return n > 0 ? combine(init, block(std::ptrdiff_t{0}, n)) : init;
+T parallel_reduce(std::ptrdiff_t n, T init, Block&& block, Combine&& combine, Blocks blocks = kLight) {
+  const std::ptrdiff_t count = (n + blocks.size - 1) / blocks.size;
+  if (count <= 1) return n > 0 ? combine(init, block(std::ptrdiff_t{0}, n)) : init;
   thread_local std::vector<T> parts;
-  parts.assign(static_cast<std::size_t>(blocks), init);
+  parts.assign(static_cast<std::size_t>(count), init);
   T* part = parts.data();
-#pragma omp parallel for schedule(static) if (n >= kSerialReductionBelow)
-  for (std::ptrdiff_t b = 0; b < blocks; ++b)
-    part[b] = block(b * kReductionBlock, std::min(n, (b + 1) * kReductionBlock));
+#pragma omp parallel for schedule(static) if (n >= blocks.serial_below)
+  for (std::ptrdiff_t b = 0; b < count; ++b)
+    part[b] = block(b * blocks.size, std::min(n, (b + 1) * blocks.size));
   T total = init;
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) total = combine(total, part[b]);
+  for (std::ptrdiff_t b = 0; b < count; ++b) total = combine(total, part[b]);
   return total;
 }
 
@@ -71,20 +73,14 @@ double parallel_sum(std::ptrdiff_t n, F&& f) {
 /// Sum of f(i) over [0, n) for bodies as heavy as a row of a matrix: shared among threads from few items on.
 template <class F>
 double parallel_sum_rows(std::ptrdiff_t n, F&& f) {
-  constexpr std::ptrdiff_t kBlock = 64;
-  const std::ptrdiff_t blocks = (n + kBlock - 1) / kBlock;
-  thread_local std::vector<double> parts;
-  parts.resize(static_cast<std::size_t>(blocks));
-  double* const part = parts.data();
-#pragma omp parallel for schedule(static) if (n >= kSerialBelow)
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    double sum = 0;
-    for (std::ptrdiff_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) sum += f(i);
-    part[b] = sum;
-  }
-  double total = 0;
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) total += part[b];
-  return total;
+  return parallel_reduce(
+      n, 0.0,
+      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        double s = 0;
+        for (std::ptrdiff_t i = begin; i < end; ++i) s += f(i);
+        return s;
+      },
+      [](double a, double b) { return a + b; }, kRows);
 }
 
 /// Largest f(i) over [0, n), or `floor` where that is larger.

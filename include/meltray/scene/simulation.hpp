@@ -96,7 +96,8 @@ class Simulation {
   const Scene& scene() const;
   double time() const;
   /// One accepted step that does not pass t_stop, and all that happens between steps.
-  /// Throws NumericalFailure with a diagnosis; the state is then that of the last accepted step.
+  /// Throws NumericalFailure with a diagnosis; the state is then that of the last accepted step, or that of
+  /// the new one before the projection that failed: both can be saved and gone on from.
   StepInfo step(double t_stop);
 
   const Particles& particles() const;

@@ -43,13 +43,18 @@ struct CgVectors {
   }
 };
 
+/// What the residual is measured against.
+enum class Relative { to_right_hand_side, to_start };
+
 /// Conjugate gradients for a symmetric positive definite A that exists as `apply(i, in)`, row i of A times
 /// `in` (D arrays), with a diagonal preconditioner; row_of(k) for k in [0, rows) names the rows. Solves A x =
-/// v.r from the start vector in x until |b - A x| <= tolerance |b| in the norm of the inverse diagonal.
-/// Bitwise independent of the number of threads. A singular consistent system is solved in the range of A.
+/// v.r from the start vector in x until |b - A x| <= tolerance |b| (or tolerance times its value at the
+/// start) in the norm of the inverse diagonal; v.r then holds b - A x. Bitwise independent of the number of
+/// threads. A singular consistent system is solved in the range of A.
 template <int D, class RowOf, class Apply>
 SolveReport conjugate_gradient(std::ptrdiff_t rows, RowOf&& row_of, Apply&& apply, CgVectors<D>& v,
-                               const std::array<double*, D>& x, double tolerance, int max_iterations) {
+                               const std::array<double*, D>& x, double tolerance, int max_iterations,
+                               Relative relative = Relative::to_right_hand_side) {
   using Row = std::array<double, D>;
   const double* const inverse = v.inverse_diagonal.data();
   std::array<double*, D> r, p, ap;
@@ -66,8 +71,10 @@ SolveReport conjugate_gradient(std::ptrdiff_t rows, RowOf&& row_of, Apply&& appl
     return sum * inverse[i];
   };
   SolveReport report;
-  const double scale = parallel_sum_rows(rows, [&](std::ptrdiff_t k) { return preconditioned(row_of(k)); });
-  if (scale == 0) {
+  double scale = 0;
+  if (relative == Relative::to_right_hand_side)
+    scale = parallel_sum_rows(rows, [&](std::ptrdiff_t k) { return preconditioned(row_of(k)); });
+  if (relative == Relative::to_right_hand_side && scale == 0) {
     parallel_for(rows, [&](std::ptrdiff_t k) {
       for (int c = 0; c < D; ++c) x[c][row_of(k)] = 0;
     });
@@ -83,6 +90,7 @@ SolveReport conjugate_gradient(std::ptrdiff_t rows, RowOf&& row_of, Apply&& appl
     }
     return preconditioned(i);
   });
+  if (relative == Relative::to_start) scale = rz;
   const double target = tolerance * tolerance * scale;
   while (rz > target && report.iterations < max_iterations) {
     const double curvature = parallel_sum_rows(rows, [&](std::ptrdiff_t k) {
@@ -113,7 +121,7 @@ SolveReport conjugate_gradient(std::ptrdiff_t rows, RowOf&& row_of, Apply&& appl
     });
     ++report.iterations;
   }
-  report.residual = std::sqrt(rz / scale);
+  report.residual = scale > 0 ? std::sqrt(rz / scale) : 0.0;
   report.converged = rz <= target;
   return report;
 }
@@ -130,8 +138,8 @@ class ConjugateGradient {
 };
 
 /// Finds the connected groups of rows without any row of `anchored` > 0 and numbers them from 1 (0 = anchored
-/// group). Returns how many there are.
+/// group). Returns how many there are. `scratch` is overwritten: kept by the caller, it spares allocations.
 int floating_components(const SymmetricMatrix& a, const std::vector<double>& anchored,
-                        std::vector<Index>& group);
+                        std::vector<Index>& group, std::vector<Index>& scratch);
 
 }  // namespace meltray::solve

@@ -70,8 +70,8 @@ class PairList {
     static_assert(N >= 1 && N <= 6);
     double s0 = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0;
     const Index* const j = j_.data();
-    const double* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
-    const double *const w = w_.data(), *const fr = f_.data();
+    const float* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
+    const float *const w = w_.data(), *const fr = f_.data();
     const Index first = start_[i], last = start_[i + 1];
 #pragma omp simd reduction(+ : s0, s1, s2, s3, s4, s5)
     for (Index k = first; k < last; ++k) {
@@ -146,8 +146,8 @@ class PairList {
   int dim_ = 3;
   std::array<double, 3> period_{};
   std::vector<Index> start_{0}, j_;
-  Components dx_;
-  std::vector<double> w_, f_;
+  std::array<std::vector<float>, 3> dx_;
+  std::vector<float> w_, f_;
   std::vector<std::uint8_t> next_to_melt_, next_to_wall_, wanted_;
   std::vector<Block> blocks_;
 };

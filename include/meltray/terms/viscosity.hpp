@@ -18,6 +18,13 @@ struct InterfaceViscosityParameters {
   double ramp = 50;            ///< [K] above melting over which alpha_SL fades out
 };
 
+/// How an implicit solve ended.
+struct ViscousSolve {
+  int iterations = 0;
+  bool converged = false;
+  Vec3 impulse = Vec3::Zero();  ///< gamma times the total viscous force [kg m/s]
+};
+
 /// Viscous accelerations a_i = (1/m_i) sum_j [c_ij v_ij' + d_ij (v_ij.x_ij) x_ij] with symmetric c, d <= 0,
 /// so that the operator -M is symmetric positive semi-definite and momentum is conserved between moving
 /// particles.
@@ -36,11 +43,11 @@ class ViscousOperator {
   void assemble(const Stage& stage, ViscousChoice choice, const InterfaceViscosityParameters& interface);
   /// Adds accelerations of moving particles; `v` are velocities of all patch particles.
   void add_acceleration(const Stage& stage, const ConstField& v, const MutField& acceleration) const;
-  /// Solves (I - gamma dA/dv) x = b for the moving particles: x and b have one entry per patch particle,
-  /// entries of resting ones are ignored; x holds the start vector. Returns iterations, or -1 without
-  /// convergence to `tolerance` (relative residual).
-  int solve(const Stage& stage, double gamma, const ConstField& b, const MutField& x, double tolerance,
-            int max_iterations) const;
+  /// Solves x - gamma A(x) = b for the velocities x of the moving particles: x and b have one entry per patch
+  /// particle; x holds the start vector, and resting neighbours keep what x says. Stops when the residual has
+  /// fallen by `tolerance`, or after so many iterations.
+  ViscousSolve solve(const Stage& stage, double gamma, const ConstField& b, const MutField& x,
+                     double tolerance, int max_iterations) const;
   /// Largest row sum of -A [1/s]: an explicit step is stable below about 2 / rate.
   double rate(const Stage& stage) const { return rate(stage, choice_); }
   /// The same of a part of what is assembled.
@@ -52,8 +59,8 @@ class ViscousOperator {
   template <int D, class F>
   void with_row(F&& f) const;
   template <int D>
-  int solve_in(const Stage& stage, double gamma, const ConstField& b, const MutField& x, double tolerance,
-               int max_iterations, solve::CgVectors<D>& vectors) const;
+  ViscousSolve solve_in(const Stage& stage, double gamma, const ConstField& b, const MutField& x,
+                        double tolerance, int max_iterations, solve::CgVectors<D>& vectors) const;
 
   ViscousChoice choice_;
   /// Per pair, in single precision because the product is bound by memory: c_ij and e_ij = sqrt(-d_ij) x_ij,

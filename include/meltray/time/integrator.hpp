@@ -41,8 +41,15 @@ class OdeProblem {
   /// Replaces b by the solution x of (I - gamma J) x = b with J = d f_I / dy at (t, y).
   /// Returns false when the solver does not converge (the step is then retried smaller).
   virtual bool solve_implicit(double t, const double* y, double gamma, double* b) = 0;
-  /// True where f_I is linear in y for the length of a step: one Newton iteration is then exact.
+  /// True where f_I is linear in y (up to a constant) for the length of a step: stages are then solved by
+  /// solve_linear, without Newton's method and without evaluations of f_I.
   virtual bool implicit_is_linear() const { return false; }
+  /// Replaces the guess in z by the solution of z - gamma f_I(t, z) = known; called where f_I is linear.
+  /// Returns false when the solver does not converge (the step is then retried smaller).
+  virtual bool solve_linear(double t, double gamma, const double* known, double* z) {
+    (void)t, (void)gamma, (void)known, (void)z;
+    return false;
+  }
   /// Largest stable step of the explicit part at (t, y), and what sets it.
   virtual StepLimit stable_step(double t, const double* y) = 0;
 };

@@ -72,7 +72,7 @@ void Projection::assemble(const Stage& s) {
     const double fair = kAnchor * (1 - lattice.face_diagonal) * full * s.volume[particle_of_[r]];
     anchor_[r] = ghost_[r] >= fair ? 1.0 : 0.0;
   }
-  floating_ = solve::floating_components(matrix_, anchor_, group_);
+  floating_ = solve::floating_components(matrix_, anchor_, group_, scratch_);
   for (Index r = 0; r < rows; ++r)
     if (group_[r] > 0) {
       matrix_.diagonal[r] -= ghost_[r];
@@ -149,17 +149,14 @@ solve::SolveReport Projection::solve(const Stage& s, const std::vector<double>& 
     x_[r] = s.patch->pressure[i];
   });
   const auto remove_means = [&](std::vector<double>& a) {
-    // Kept: a right-hand side does not allocate.
-    thread_local std::vector<double> sum;
-    thread_local std::vector<Index> count;
-    sum.assign(floating_ + 1, 0.0);
-    count.assign(floating_ + 1, 0);
+    group_sum_.assign(floating_ + 1, 0.0);
+    group_size_.assign(floating_ + 1, 0);
     for (Index r = 0; r < rows(); ++r) {
-      sum[group_[r]] += a[r];
-      ++count[group_[r]];
+      group_sum_[group_[r]] += a[r];
+      ++group_size_[group_[r]];
     }
     for (Index r = 0; r < rows(); ++r)
-      if (group_[r] > 0) a[r] -= sum[group_[r]] / count[group_[r]];
+      if (group_[r] > 0) a[r] -= group_sum_[group_[r]] / group_size_[group_[r]];
   };
   if (floating_ > 0) remove_means(rhs_);
   const auto report = cg_.solve(matrix_, rhs_, x_, options.tolerance, options.max_iterations);

@@ -30,7 +30,7 @@ struct ModelSetup {
     model.pairs.build(model.patch, selector.grid(), kSkin * constants.spacing, extra);
     model.stage.heat = extra;
     terms::prepare_stage(model.stage);
-    model.invalidate();
+    model.evaluate_patch(0);
   }
 
   std::vector<double> state() {

@@ -81,6 +81,7 @@ double size_of(const std::vector<double>& a) {
 TEST_CASE("right-hand side: the same, whatever was evaluated before") {
   test::ModelSetup fresh(test::vortices), used(test::vortices);
   const auto y = fresh.state(), other = disturbed(y, used.model.stage.moving.size(), 0.1);
+  used.state();
   used.explicit_rate(y);
   used.implicit_rate(other);
   used.explicit_rate(other);
@@ -95,6 +96,7 @@ TEST_CASE("right-hand side: lists that are kept give the rates of lists that are
   test::ModelSetup kept(test::vortices), renewed(test::vortices);
   const auto y = disturbed(kept.state(), kept.model.stage.moving.size(), 0.1);
   kept.explicit_rate(kept.state());
+  renewed.state();
   renewed.model.evaluate(0, y.data());
   write_back(renewed.model.patch, renewed.particles);
   renewed.build_lists();
@@ -114,11 +116,12 @@ TEST_CASE("right-hand side: allocates nothing after the first") {
   const std::size_t moving = setup.model.stage.moving.size();
   std::vector<std::vector<double>> states;
   for (int k = 0; k < 5; ++k) states.push_back(disturbed(y, moving, 0.02 * k));
-  std::vector<double> rate(y.size()), b(y.size(), 1.0);
+  std::vector<double> rate(y.size()), b(y.size(), 1.0), z = y;
   const auto evaluate = [&](const std::vector<double>& s) {
     setup.model.explicit_rate(0, s.data(), rate.data());
     setup.model.implicit_rate(0, s.data(), rate.data());
     setup.model.solve_implicit(0, s.data(), 1e-4, b.data());
+    setup.model.solve_linear(0, 1e-4, s.data(), z.data());
   };
   evaluate(states[0]);
   const long before = allocations;

@@ -168,20 +168,20 @@ TEST_CASE("floating components: groups without an anchored row are numbered from
   const int n = 12;
   const auto a = network(n, 0.0, 4);  // columns 0 to 4 and 5 to 11 are not connected
   std::vector<double> anchored(a.rows(), 0.0);
-  std::vector<Index> group;
-  CHECK(floating_components(a, anchored, group) == 2);
+  std::vector<Index> group, scratch;
+  CHECK(floating_components(a, anchored, group, scratch) == 2);
   std::size_t wrong = 0;
   for (Index r = 0; r < a.rows(); ++r) wrong += group[r] != (r % n <= 4 ? 1 : 2);
   CHECK(wrong == 0);
 
   anchored[2] = 1e-9;  // in the left part
-  CHECK(floating_components(a, anchored, group) == 1);
+  CHECK(floating_components(a, anchored, group, scratch) == 1);
   wrong = 0;
   for (Index r = 0; r < a.rows(); ++r) wrong += group[r] != (r % n <= 4 ? 0 : 1);
   CHECK(wrong == 0);
 
   anchored[5 * n + 7] = 1;
-  CHECK(floating_components(a, anchored, group) == 0);
+  CHECK(floating_components(a, anchored, group, scratch) == 0);
   CHECK(*std::max_element(group.begin(), group.end()) == 0);
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("floating components: a link of weight zero is no link, a row of its o
   a.column = {1, 0};
   a.off = {0, 0};
   a.diagonal = {1, 1, 0};
-  std::vector<Index> group;
-  CHECK(floating_components(a, {1, 0, 0}, group) == 2);
+  std::vector<Index> group, scratch;
+  CHECK(floating_components(a, {1, 0, 0}, group, scratch) == 2);
   CHECK(group == std::vector<Index>{0, 1, 2});
 }

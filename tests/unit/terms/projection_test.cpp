@@ -254,7 +254,7 @@ TEST_CASE("projection: a linear velocity field v = A x has the source -tr(A^2), 
       worst = std::max(worst, std::abs(rate[i] + (a * a).trace()));
     }
     CHECK(inside > 100);
-    CHECK(worst < 1e-9 * a.squaredNorm());
+    CHECK(worst < 1e-7 * a.squaredNorm());  // pairs are stored in single precision
   }
 }
 
@@ -276,7 +276,7 @@ TEST_CASE("projection: rigid rotation keeps its shape: source 2 omega^2 and a pa
     int wrong = 0;
     for (Index i = 0; i < s.patch.size(); ++i)
       if (s.position(i).norm() < (cells - 4) * kDx)
-        wrong += std::abs(source[i] / (2 * omega * omega) - 1) > 1e-9;
+        wrong += std::abs(source[i] / (2 * omega * omega) - 1) > 1e-6;  // pairs in single precision
     CHECK(wrong == 0);
     CHECK(p.solve(s.stage, source, exact(entry)).converged);
     const double depth = 0.5 * kRho * omega * omega * r2;  // p = -rho omega^2 (R^2 - r^2)/2

@@ -47,7 +47,7 @@ TEST_CASE("free surface: a flat face is one layer with exact normal and area") {
         area += top ? s.stage.area[i] : 0;
         worst = std::max(worst, static_cast<double>(s.stage.loose[i]));
       }
-      CHECK(worst < 1e-9);
+      CHECK(worst < 1e-7);  // pairs are stored in single precision
       CHECK(area == Approx(std::pow(12 * kDx, dim - 1)));
     }
 }

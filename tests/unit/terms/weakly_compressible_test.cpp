@@ -86,9 +86,10 @@ TEST_CASE("continuity, Eq. (2): uniform expansion thins, rotation does not") {
   std::vector<double> rate(b.patch.size(), 0.0);
   b.set_velocity([](const Vec3& x) { return Vec3(3 * x); });
   continuity.add_rate(b.stage, rate.data());
-  // Inside, sums over the lattice are those that the second moment was made from: exact to round-off.
+  // Inside, sums over the lattice are those that the second moment was made from: exact to the single
+  // precision in which pairs are stored.
   for (Index i = 0; i < b.patch.size(); ++i)
-    if (b.deep(i, 0.3)) CHECK(rate[i] == Approx(-3.0 * dim * 7000).epsilon(1e-12));
+    if (b.deep(i, 0.3)) CHECK(rate[i] == Approx(-3.0 * dim * 7000).epsilon(1e-7));
   std::fill(rate.begin(), rate.end(), 0.0);
   b.set_velocity([](const Vec3& x) { return Vec3(-x[1], x[0], 0); });
   continuity.add_rate(b.stage, rate.data());
@@ -217,7 +218,7 @@ TEST_CASE(
     for (double r : rate) most = std::max(most, std::abs(r));
     return most;
   };
-  CHECK(largest(DiffusionForm::antuono) < 1e-10 * largest(DiffusionForm::molteni_colagrossi));
+  CHECK(largest(DiffusionForm::antuono) < 1e-6 * largest(DiffusionForm::molteni_colagrossi));
 }
 
 TEST_CASE("density diffusion does not smear a thermal profile of the density") {

@@ -81,6 +81,10 @@ struct Reaction : OdeProblem {
     for (std::size_t i = 0; i < n; ++i) x[i] /= 1 + gamma * k(i);
     return true;
   }
+  bool solve_linear(double, double gamma, const double* known, double* z) override {
+    for (std::size_t i = 0; i < n; ++i) z[i] = (known[i] + gamma * 0.5 * k(i)) / (1 + gamma * k(i));
+    return true;
+  }
   StepLimit stable_step(double, const double*) override { return limit; }
 };
 

@@ -49,7 +49,8 @@ class Projection {
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
   std::vector<double> ghost_, anchor_, rhs_, x_;
-  std::vector<Index> group_;
+  std::vector<Index> group_, group_size_, scratch_;
+  std::vector<double> group_sum_;
   Index floating_ = 0;
   solve::ConjugateGradient cg_;
 };
