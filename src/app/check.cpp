@@ -10,6 +10,7 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/elastic.hpp"
 #include "meltray/scene/expected_flow.hpp"
 #include "meltray/scene/optics.hpp"
 #include "meltray/scene/presets.hpp"
@@ -113,6 +114,10 @@ std::vector<Limit> developed_limits(const Scene& s) {
     out.push_back(
         {"acoustic", s.time.cfl_acoustic * h / (s.flow.sound_speed * (1 + 0.6 * alpha) + kPoolSpeed)});
   }
+  if (scene::is_elastic(s)) {
+    const terms::ElasticSolid solid = scene::elastic_solid(s);
+    out.push_back({"elastic", s.time.cfl_acoustic * h / solid.acoustic_speed(m.density)});
+  }
   if (s.terms.pressure) out.push_back({"advective", s.time.cfl_advective * h / kPoolSpeed});
   if (s.terms.surface_tension)
     out.push_back({"capillary", s.time.cfl_capillary * std::sqrt(m.density * h * h * h /
@@ -191,6 +196,25 @@ void print_compressibility(const Scene& s) {
                                                      : ""));
   line("sound speed for 1 % [m/s]",
        fmt::format("{:.3g}; steps shrink with its inverse", scene::default_sound_speed(s)));
+}
+
+/// What the modulus of elastic solid costs in steps, and what a softer one means.
+void print_elastic(const Scene& s) {
+  if (!scene::is_elastic(s)) return;
+  heading("elastic solid");
+  const terms::ElasticSolid solid = scene::elastic_solid(s);
+  const double rho = s.material.density, scale = s.flow.elastic_modulus_scale,
+               step = s.time.cfl_acoustic * s.domain.smoothing_ratio * s.domain.spacing /
+                      solid.acoustic_speed(rho);
+  line("K, G [Pa]", fmt::format("{:.4g}, {:.4g}", solid.bulk_modulus, solid.shear_modulus));
+  line("longitudinal sound [m/s]", fmt::format("{:.4g}", solid.sound_speed(rho)));
+  line("elastic step [s]", fmt::format("{:.3g}", step));
+  if (scale < 1)
+    line("modulus scale", fmt::format("{:g}: steps {:.3g} times those of the full modulus ({:.3g} s), strains "
+                                      "under load {:.3g} times; stresses are not the material's",
+                                      scale, 1 / std::sqrt(scale), step * std::sqrt(scale), 1 / scale));
+  else
+    line("modulus scale", "1; 0.01 would make steps ten times longer and strains under load 100 times larger");
 }
 
 void print_laser(const Scene& s) {
@@ -288,6 +312,7 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
   }
   print_derived(scene);
   print_compressibility(scene);
+  print_elastic(scene);
   print_laser(scene);
   print_run_time(simulation, step);
   print_limits_passed(scene);

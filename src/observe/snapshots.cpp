@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "meltray/core/errors.hpp"
@@ -30,6 +31,22 @@ constexpr Field kFields[] = {{"velocity", "m/s", "Float", 4, true},
                              {"resolidified", "flag", "UChar", 1, false},
                              {"on_surface", "flag", "UChar", 1, false},
                              {"id", "index", "Int", 4, false}};
+/// Of scenes with elastic solid, besides.
+constexpr Field kStress = {"von_mises_stress", "Pa", "Float", 4, false};
+
+/// sqrt(3/2 S : S); in two dimensions, plane strain, S_yy = -S_xx - S_zz.
+float von_mises(const Particles& p, std::size_t i) {
+  double square = 0, trace = 0;
+  int n = 0;
+  for (int a = 0; a < p.dim; ++a)
+    for (int b = a; b < p.dim; ++b, ++n) {
+      const double s = p.stress[n][i];
+      square += a == b ? s * s : 2 * s * s;
+      trace += a == b ? s : 0.0;
+    }
+  if (p.dim == 2) square += trace * trace;
+  return static_cast<float>(std::sqrt(1.5 * square));
+}
 
 void write_beam(Hdf5Writer& out, const laser::Beam& beam, double t) {
   const Vec3 focus = beam.focus(t), axis = beam.axis();
@@ -40,7 +57,16 @@ void write_beam(Hdf5Writer& out, const laser::Beam& beam, double t) {
   out.attribute("/", "beam_power_w", beam.power(t));
 }
 
-std::string grid_text(const std::string& file, double time, std::size_t n) {
+std::string attribute_text(const Field& f, const std::string& file, std::size_t n) {
+  return fmt::format(
+      "    <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\">\n"
+      "     <DataItem Dimensions=\"{2}{3}\" NumberType=\"{4}\" Precision=\"{5}\" "
+      "Format=\"HDF\">{6}:/{0}</DataItem>\n"
+      "    </Attribute>\n",
+      f.name, f.vector ? "Vector" : "Scalar", n, f.vector ? " 3" : "", f.type, f.bytes, file);
+}
+
+std::string grid_text(const std::string& file, double time, std::size_t n, bool stress) {
   std::string text = fmt::format(
       "   <Grid Name=\"particles\" GridType=\"Uniform\">\n"
       "    <Time Value=\"{}\"/>\n"
@@ -50,13 +76,8 @@ std::string grid_text(const std::string& file, double time, std::size_t n) {
       "Format=\"HDF\">{}:/position</DataItem>\n"
       "    </Geometry>\n",
       time, n, n, file);
-  for (const Field& f : kFields)
-    text += fmt::format(
-        "    <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\">\n"
-        "     <DataItem Dimensions=\"{2}{3}\" NumberType=\"{4}\" Precision=\"{5}\" "
-        "Format=\"HDF\">{6}:/{0}</DataItem>\n"
-        "    </Attribute>\n",
-        f.name, f.vector ? "Vector" : "Scalar", n, f.vector ? " 3" : "", f.type, f.bytes, file);
+  for (const Field& f : kFields) text += attribute_text(f, file, n);
+  if (stress) text += attribute_text(kStress, file, n);
   return text + "   </Grid>\n";
 }
 
@@ -91,7 +112,8 @@ Snapshots::Snapshots(fs::path run_folder, double time) : folder_(std::move(run_f
 }
 
 void Snapshots::write(const Particles& p, const SnapshotInfo& info) {
-  std::vector<float> x, v, temperature, pressure;
+  std::vector<float> x, v, temperature, pressure, stress;
+  has_stress_ = !p.stress[0].empty();
   std::vector<std::uint8_t> phase, resolidified, surface;
   std::vector<std::int32_t> id;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -103,6 +125,7 @@ void Snapshots::write(const Particles& p, const SnapshotInfo& info) {
     }
     temperature.push_back(static_cast<float>(p.temperature[i]));
     pressure.push_back(static_cast<float>(p.pressure[i]));
+    if (has_stress_) stress.push_back(von_mises(p, i));
     phase.push_back(p.phase[i]);
     resolidified.push_back(p.has(i, kResolidified) ? 1 : 0);
     surface.push_back(info.on_surface != nullptr && i < info.on_surface->size() ? (*info.on_surface)[i] : 0);
@@ -118,6 +141,10 @@ void Snapshots::write(const Particles& p, const SnapshotInfo& info) {
   out.dataset("resolidified", resolidified, 1, packed);
   out.dataset("on_surface", surface, 1, packed);
   out.dataset("id", id, 1, packed);
+  if (has_stress_) {
+    out.dataset(kStress.name, stress, 1, packed);
+    out.attribute(kStress.name, "units", std::string_view(kStress.unit));
+  }
   out.attribute("position", "units", std::string_view("m"));
   for (const Field& f : kFields) out.attribute(f.name, "units", std::string_view(f.unit));
   out.attribute("/", "schema_version", std::int64_t{kSnapshotSchema});
@@ -140,7 +167,7 @@ void Snapshots::write_collection() const {
       "  <Information Name=\"schema_version\" Value=\"{}\"/>\n"
       "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
       kSnapshotSchema);
-  for (const auto& e : entries_) text += grid_text(e.file, e.time, e.particles);
+  for (const auto& e : entries_) text += grid_text(e.file, e.time, e.particles, has_stress_);
   text += "  </Grid>\n </Domain>\n</Xdmf>\n";
   replace_file(folder_ / "particles.xdmf", text);
 }

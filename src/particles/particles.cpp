@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/particles/particles.hpp"
 
+#include <string>
+
 namespace meltray {
 
 void Particles::add(const Vec3& position, double enthalpy, double m, double smoothing_length,
@@ -27,6 +29,8 @@ void Particles::archive(Archive& a) {
   }
   a.values("particles/enthalpy", h);
   if (!density.empty()) a.values("particles/density", density);
+  for (int c = 0; c < symmetric_count(dim); ++c)
+    if (!stress[c].empty()) a.values("particles/stress_" + std::to_string(c), stress[c]);
   a.values("particles/mass", mass);
   a.values("particles/smoothing_length", smoothing);
   a.values("particles/pressure", pressure);

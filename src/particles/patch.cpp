@@ -40,11 +40,13 @@ void PatchSelector::solidified(const Particles& particles, Index i) {
 }
 
 void PatchSelector::select_all(const Particles& particles, Patch& patch) {
+  core_.clear();
   marked_.assign(grid_.cells(), 1);
   fill(particles, patch);
 }
 
-void PatchSelector::select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch) {
+void PatchSelector::select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,
+                                     Index reach) {
   core_.assign(grid_.cells(), 0);
   marked_.assign(grid_.cells(), 0);
   const auto x = view(particles.x);
@@ -52,7 +54,7 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
     const Index cell = grid_.cell(x, i);
     if (core_[cell]) return;
     core_[cell] = 1;
-    grid_.for_block(cell, 2, [&](Index k) { marked_[k] = 1; });
+    grid_.for_block(cell, reach, [&](Index k) { marked_[k] = 1; });
   };
   for (Index i : moving_)
     if (!particles.has(i, kRemoved)) mark(i);
@@ -141,6 +143,8 @@ void reload(const Particles& particles, Patch& patch) {
   patch.pressure.resize(n);
   const bool dense = !particles.density.empty();
   if (dense) patch.density.resize(n);
+  const int stresses = particles.stress[0].empty() ? 0 : symmetric_count(particles.dim);
+  for (int c = 0; c < stresses; ++c) patch.stress[c].resize(n);
   patch.liquid.resize(n);
   patch.wall.resize(n);
   parallel_for(n, [&](Index k) {
@@ -154,16 +158,19 @@ void reload(const Particles& particles, Patch& patch) {
     patch.smoothing[k] = particles.smoothing[i];
     patch.pressure[k] = particles.pressure[i];
     if (dense) patch.density[k] = particles.density[i];
+    for (int c = 0; c < stresses; ++c) patch.stress[c][k] = particles.stress[c][i];
     patch.liquid[k] = particles.is_liquid(i);
     patch.wall[k] = particles.wall[i];
   });
 }
 
 void write_back(const Patch& patch, Particles& particles) {
-  const bool dense = !particles.density.empty();
+  const bool dense = !particles.density.empty(), elastic = !patch.elastic.empty();
   parallel_for(patch.size(), [&](Index k) {
     const Index i = patch.global[k];
-    if (patch.liquid[k])
+    if (elastic && patch.elastic[k])
+      for (int c = 0; c < symmetric_count(patch.dim); ++c) particles.stress[c][i] = patch.stress[c][k];
+    if (patch.liquid[k] || (elastic && patch.elastic[k]))
       for (int c = 0; c < patch.dim; ++c) {
         particles.x[c][i] = patch.x[c][k];
         particles.v[c][i] = patch.v[c][k];

@@ -5,6 +5,7 @@
 
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/scene/elastic.hpp"
 
 namespace meltray::scene {
 
@@ -113,9 +114,13 @@ void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& o
     const std::size_t i = out.size() - 1;
     out.temperature[i] = body->temperature;
     const bool liquid = out.h[i] >= scene.material.enthalpy_liquidus();
+    const bool clamped = !liquid && body->clamped;
+    if (clamped) out.flags[i] |= kClamped;
     if (liquid) {
       out.phase[i] = static_cast<std::uint8_t>(Phase::liquid);
       out.flags[i] |= kWasLiquid;
+    }
+    if (liquid || (is_elastic(scene) && !clamped)) {
       const Vec3 v = initial_velocity(domain, *body, x);
       for (int c = 0; c < k.dim; ++c) out.v[c][i] = v[c];
     }
@@ -165,14 +170,17 @@ void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& 
       }
 }
 
-/// Every particle starts without pressure and fills its lattice site: with thermal expansion the mass of melt
-/// follows from its temperature.
+/// Every particle fills its lattice site. With thermal expansion its mass follows from its temperature, that
+/// of elastic solid from the scene's initial temperature, at which the lattice is without stress.
 void set_densities(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
   out.density.assign(out.size(), k.density);
   if (!scene.flow.thermal_expansion) return;
+  const bool elastic = is_elastic(scene);
+  const double solid =
+      elastic ? elastic_solid(scene).reference_density(k, scene.heat.initial_temperature) : k.density;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (!out.is_liquid(i)) continue;
-    out.density[i] = scene.material.density_of_t(out.temperature[i]);
+    if (!out.is_liquid(i) && !elastic) continue;
+    out.density[i] = out.is_liquid(i) ? scene.material.density_of_t(out.temperature[i]) : solid;
     out.mass[i] = out.density[i] * std::pow(k.spacing, k.dim);
   }
 }
@@ -215,6 +223,8 @@ Particles build_particles(const Scene& scene, const terms::SceneConstants& const
     throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");
   add_dummies(scene, constants, out);
   if (scene.terms.pressure && scene.flow.solver == FlowSolver::wcsph) set_densities(scene, constants, out);
+  if (is_elastic(scene))
+    for (int c = 0; c < symmetric_count(out.dim); ++c) out.stress[c].assign(out.size(), 0.0);
   return out;
 }
 

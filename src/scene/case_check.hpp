@@ -11,6 +11,7 @@ namespace meltray::scene {
 void check_geometry(const Scene& scene, const Document& document);
 void check_material(const Scene& scene, const Document& document);
 void check_terms(const Scene& scene, const Document& document);
+void check_elastic(const Scene& scene, const Document& document);
 void check_flow(const Scene& scene, const Document& document);
 void check_laser(const Scene& scene, const Document& document);
 void check_time(const Scene& scene, const Document& document);

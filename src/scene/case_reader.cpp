@@ -183,6 +183,7 @@ Scene build(const Document& document) {
   check_material(scene, document);
   check_terms(scene, document);
   check_flow(scene, document);
+  check_elastic(scene, document);
   check_time(scene, document);
   check_laser(scene, document);
   return scene;

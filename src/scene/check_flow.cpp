@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "meltray/scene/presets.hpp"
+#include "meltray/scene/elastic.hpp"
 #include "scene/case_check.hpp"
 
 namespace meltray::scene {
@@ -9,12 +9,6 @@ namespace meltray::scene {
 void check_flow(const Scene& scene, const Document& document) {
   const Flow& flow = scene.flow;
   if (!scene.terms.pressure) return;
-  if (flow.solid == SolidModel::elastic)
-    refuse(document.place("flow.solid"), "flow.solid",
-           document.given("flow.solid")
-               ? "\"elastic\", and the elastic solid is not available"
-               : "\"elastic\" by model = \"wcsph\", and the elastic solid is not available",
-           "\"fixed\" (the other choices of the row stay)");
   const bool weak = flow.solver == FlowSolver::wcsph;
   if (scene.terms.artificial_viscosity && !weak)
     refuse(document.place("terms.artificial_viscosity"), "terms.artificial_viscosity",
@@ -26,7 +20,9 @@ void check_flow(const Scene& scene, const Document& document) {
     refuse(document.place("terms.buoyancy"), "terms.buoyancy",
            "true with flow.thermal_expansion = true, which already contains buoyancy", "one of the two");
   const Property& rho = scene.material.density_of_t;
-  if (flow.thermal_expansion && rho(scene.material.liquidus) == rho(scene.material.boiling_temperature + 1e4))
+  const bool solid_expands = is_elastic(scene) && scene.material.linear_expansion_solid > 0;
+  if (flow.thermal_expansion && !solid_expands &&
+      rho(scene.material.liquidus) == rho(scene.material.boiling_temperature + 1e4))
     refuse(document.place("flow.thermal_expansion"), "flow.thermal_expansion",
            "true without effect: the density of this material does not depend on temperature",
            "material.density_of_t_kg_m3 that does, with it");

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "meltray/scene/elastic.hpp"
 #include "scene/case_check.hpp"
 
 namespace meltray::scene {
@@ -13,13 +14,14 @@ namespace {
 void check_custom(const Scene& scene, const Document& document) {
   const Terms& t = scene.terms;
   const bool thermal = t.conduction || t.evaporation || t.radiation || t.melting || scene.laser.has_value();
+  const bool elastic = is_elastic(scene);
   const bool vapour = t.evaporation || (t.recoil && scene.surface.recoil_pressure == 0);
   const bool fresnel = scene.laser && !scene.laser->trace.fixed_absorptance;
   struct Use {
     const char* name;
     bool used;
   };
-  const std::array<Use, 21> uses = {{{"density_kg_m3", true},
+  const std::array<Use, 24> uses = {{{"density_kg_m3", true},
                                      {"heat_capacity_solid_j_kg_k", true},
                                      {"heat_capacity_liquid_j_kg_k", true},
                                      {"solidus_k", true},
@@ -34,6 +36,9 @@ void check_custom(const Scene& scene, const Document& document) {
                                      {"surface_tension_n_m", t.surface_tension || t.marangoni},
                                      {"expansion_1_k", t.buoyancy},
                                      {"expansion_reference_k", t.buoyancy},
+                                     {"linear_expansion_solid_1_k", elastic && scene.flow.thermal_expansion},
+                                     {"youngs_modulus_pa", elastic},
+                                     {"poisson_ratio", elastic},
                                      {"emissivity", t.radiation},
                                      {"contact_angle_deg", t.wetting},
                                      {"refractive_n_solid", fresnel},

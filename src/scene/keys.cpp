@@ -91,8 +91,8 @@ std::vector<Key> top_keys() {
             .kind = Kind::word,
             .unit = "",
             .sentence =
-                "Row of the paper's Table 1: sets solver, numerical viscosity, expansion, buoyancy and "
-                "shifting where their keys are not given."};
+                "Row of the paper's Table 1: sets solver, numerical viscosity, expansion, buoyancy, "
+                "solid and shifting where their keys are not given."};
   for (const Preset& p : presets()) model.words.emplace_back(p.model);
   model.get = [](const Scene& s, int) { return Value{s.model}; };
   model.set = [](Scene& s, int, const Value& v) { s.model = *v.text(); };
@@ -183,8 +183,9 @@ const std::vector<std::string>& face_names() {
 const std::vector<Key>& all_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (auto section : {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, solver_keys,
-                         flow_keys, surface_keys, heat_keys, laser_keys, time_keys, output_keys})
+    for (auto section :
+         {top_keys, domain_keys, face_keys, body_keys, material_keys, term_keys, solver_keys, elastic_keys,
+          flow_keys, surface_keys, heat_keys, laser_keys, time_keys, output_keys})
       append(all, section());
     return all;
   }();

@@ -105,6 +105,7 @@ std::vector<Key> body_keys();
 std::vector<Key> material_keys();
 std::vector<Key> term_keys();
 std::vector<Key> solver_keys();
+std::vector<Key> elastic_keys();
 std::vector<Key> flow_keys();
 std::vector<Key> surface_keys();
 std::vector<Key> heat_keys();

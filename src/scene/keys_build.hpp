@@ -135,6 +135,9 @@ Need term(const char* name, Member member) {
 /// The need for a solver of the flow.
 Need solved_by(FlowSolver solver);
 
+/// The need for elastic solid.
+Need elastic();
+
 /// Default from the row of Table 1 that the case names, where it names one and has a flow: `member` is the
 /// row's choice, `at` the place in the scene.
 template <class Member, class At>

@@ -142,6 +142,8 @@ std::vector<Key> body_keys() {
                        s.domain.bodies[static_cast<std::size_t>(i)].temperature = s.heat.initial_temperature;
                      }),
       vector("bodies.*.velocity_m_s", "m/s", any(), BODY(velocity), "Velocity at the start."),
+      boolean("bodies.*.clamped", BODY(clamped), "Elastic solid that stays at its place and takes stress.")
+          .only_if(elastic()),
   };
 }
 

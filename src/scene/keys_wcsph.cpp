@@ -20,7 +20,7 @@ std::vector<Key> solver_keys() {
       }};
   Key solid = word<SolidModel>("flow.solid", {{"fixed", SolidModel::fixed}, {"elastic", SolidModel::elastic}},
                                MELTRAY_AT(flow.solid),
-                               "Solid that rests where it is; the elastic one is not available yet.");
+                               "Solid that rests where it is, or a thermoelastic one, Eq. (9).");
   return {
       of_row(word<FlowSolver>("flow.solver", {{"isph", FlowSolver::isph}, {"wcsph", FlowSolver::wcsph}},
                               MELTRAY_AT(flow.solver),

@@ -66,6 +66,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   divergence_time = kDivergenceCrossings * crossing;
   partitions = initial_partitions(scene.time);
   if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) weak_.emplace(scene);
+  if (is_elastic(scene)) elastic_ = elastic_solid(scene);
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
@@ -105,7 +106,7 @@ std::size_t Model::enthalpy_begin() const {
 }
 
 std::size_t Model::crossings_begin() const {
-  return enthalpy_begin() + stage.heated.size();
+  return elastic_begin() + elastic_size();
 }
 
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
@@ -122,6 +123,7 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
     for (std::size_t k = 0; k < nm; ++k) y[2 * dim * nm + k] = patch.density[stage.moving[k]];
   for (std::size_t k = 0; k < nh; ++k) y[h + k] = patch.h[stage.heated[k]];
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
+  if (has_elastic_solid()) pack_elastic(y);
   last_y_.assign(y.begin(), y.begin() + crossings_begin());
 
   const Time& time = scene_.time;
@@ -134,6 +136,7 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
   add("velocity", dim * nm, dim * nm, time.rtol, time.atol_velocity);
   if (weakly_compressible()) add("density", 2 * dim * nm, nm, 0.0, time.atol_density * constants_.density);
   add("enthalpy", h, nh, 0.0, time.atol_temperature * constants_.material.heat_capacity_solid);
+  if (has_elastic_solid()) add_elastic_fields(fields);
   add("crossings", crossings_begin(), terms::Crossings::kCount, 0.0, 1e100);
 }
 
@@ -155,6 +158,7 @@ void Model::unpack(const double* y) {
   const double* const h = y + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { patch.h[stage.heated[k]] = h[k]; });
+  if (has_elastic_solid()) unpack_elastic(y);
 }
 
 void Model::evaluate_patch(double t) {
@@ -165,6 +169,7 @@ void Model::evaluate_patch(double t) {
   }
   parallel_for(stage.size(), [&](Index i) { update_temperature(i); });
   if (weakly_compressible()) weak_->state.update(stage);
+  if (has_elastic_solid()) elastic_->update(stage);
   update_surface();
 }
 
@@ -188,12 +193,13 @@ void Model::update_surface() {
 }
 
 void Model::evaluate(double t, const double* y) {
-  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin();
+  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin(),
+                    e = elastic_begin(), ne = stage.elastic.size();
   const auto same = [&](std::size_t begin, std::size_t end) {
     return std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
   };
-  const bool still = same(0, constants_.dim * nm), same_h = same(h, n);
-  if (still && same(constants_.dim * nm, h) && same_h && t == stage.t) return;
+  const bool still = same(0, constants_.dim * nm) && same(e, e + constants_.dim * ne), same_h = same(h, e);
+  if (still && same(constants_.dim * nm, h) && same_h && same(e, n) && t == stage.t) return;
   last_y_.assign(y, y + n);
   stage.t = t;
   unpack(y);
@@ -208,8 +214,10 @@ void Model::evaluate(double t, const double* y) {
     if (!still) {
       const auto timer = timers_.measure(Part::neighbours);
       pairs.refresh(patch, constants_.kernel, stage.moving);
+      if (has_elastic_solid()) pairs.refresh(patch, constants_.kernel, stage.elastic);
     }
     weak_->state.update(stage);
+    if (has_elastic_solid()) elastic_->update(stage);
     const auto timer = timers_.measure(Part::pressure);
     weak_->state.extrapolate(stage);
   } else if (!projects_steps()) {
@@ -269,6 +277,7 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
   double* const dh = rate + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { dh[k] = heating_[stage.heated[k]]; });
+  if (has_elastic_solid()) finish_elastic_rates(y, rate, transport);
   crossings.write(rate + crossings_begin());
 }
 

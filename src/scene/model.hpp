@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "meltray/core/timers.hpp"
+#include "meltray/scene/elastic.hpp"
 #include "meltray/scene/scene.hpp"
 #include "meltray/scene/simulation.hpp"
 #include "meltray/terms/artificial_viscosity.hpp"
@@ -44,9 +45,9 @@ struct WeaklyCompressible {
   terms::ArtificialViscosity artificial;
 };
 
-/// The active terms of a scene as an ODE on the patch: y = [x | v | rho | h | crossings] of the particles
-/// that move and those that exchange heat, rho only in weakly compressible scenes; f_E and f_I are sums over
-/// the terms of each partition.
+/// The active terms of a scene as an ODE on the patch: y = [x | v | rho | h | x v rho S | crossings] of the
+/// particles that move, those that exchange heat, and elastic solid, rho only in weakly compressible scenes;
+/// f_E and f_I are sums over the terms of each partition.
 class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
@@ -83,12 +84,17 @@ class Model : public OdeProblem {
   std::size_t crossings_begin() const;
   bool flows() const { return scene_.terms.pressure; }
   bool weakly_compressible() const { return weak_.has_value(); }
+  bool has_elastic_solid() const { return elastic_.has_value(); }
   /// One projection after each step, with all geometry frozen over the step.
   bool projects_steps() const {
     return flows() && !weakly_compressible() && scene_.flow.projection == Projection::step;
   }
   /// Density with which a resting particle of the patch joins the melt: it keeps its pressure [kg/m^3].
   double density_on_melting(Index i) const;
+  /// Density of solid without pressure at a temperature: that of elastic solid, else the scene's [kg/m^3].
+  double density_of_solid(double temperature) const;
+  /// Largest speed of elastic solid in the patch [m/s].
+  double elastic_speed() const;
 
   terms::Stage stage;
   Patch patch;
@@ -122,6 +128,14 @@ class Model : public OdeProblem {
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
   double acoustic_step(double speed) const;
+  std::size_t elastic_begin() const;
+  std::size_t elastic_size() const;
+  void pack_elastic(std::vector<double>& y) const;
+  void add_elastic_fields(std::vector<StateField>& fields) const;
+  void unpack_elastic(const double* y);
+  void add_elastic_rates(terms::Rates& rates);
+  void finish_elastic_rates(const double* y, double* rate, bool transport) const;
+  double elastic_step() const;
 
   const Scene& scene_;
   const terms::SceneConstants& constants_;
@@ -139,8 +153,10 @@ class Model : public OdeProblem {
   terms::Shifting shifting_;
   terms::ProjectionOptions projection_options_;
   std::optional<WeaklyCompressible> weak_;
+  std::optional<terms::ElasticSolid> elastic_;
 
   Components acceleration_, transport_, all_forces_;  ///< scratch, one entry per patch particle
+  SymmetricComponents stress_rate_;
   std::vector<double> heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, start_x_;
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;

@@ -148,6 +148,7 @@ std::vector<StepLimit> Model::step_limits() {
       if (rate > 0) limits.push_back({time.cfl_viscous / rate, "viscous"});
     }
   }
+  if (has_elastic_solid() && !stage.elastic.empty()) limits.push_back({elastic_step(), "elastic"});
   if (scene_.terms.conduction && !partitions.conduction && !stage.heated.empty()) {
     if (!conduction_valid_) conduction_.assemble(stage);
     conduction_valid_ = true;

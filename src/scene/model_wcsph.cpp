@@ -54,6 +54,7 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
     w.artificial.add_acceleration(stage, rates.acceleration);
     crossings.viscosity += force_gained();
   }
+  if (has_elastic_solid()) add_elastic_rates(rates);
   largest_acceleration =
       parallel_max(static_cast<std::ptrdiff_t>(stage.moving.size()), 0.0, [&](std::ptrdiff_t k) {
         const Index i = stage.moving[k];

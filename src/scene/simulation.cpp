@@ -60,8 +60,10 @@ void Simulation::Impl::select() {
     if (everything)
       selector.select_all(particles, model.patch);
     else
-      selector.select_near_melt(
-          particles, laser ? std::span<const Index>(laser->lit()) : std::span<const Index>{}, model.patch);
+      selector.select_near_melt(particles,
+                                laser ? std::span<const Index>(laser->lit()) : std::span<const Index>{},
+                                model.patch, patch_reach());
+    if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, scene.flow.elastic_depth);
     const Index n = model.patch.size();
     extra.assign(n, 0);
     const bool heats =
@@ -73,7 +75,7 @@ void Simulation::Impl::select() {
       for (Index i = 0; i < n; ++i) extra[i] = (in_state[model.patch.global[i]] & 2) != 0;
       for (Index i : laser->lit()) in_state[i] &= 1;
     }
-    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, extra);
+    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, list_rows());
     ++counters.list_builds;
     lists_valid = true;
     deposited = false;
@@ -146,6 +148,7 @@ StepInfo Simulation::Impl::step(double t_stop) {
   time = report.t;
   last_dt = report.dt;
   book(report);
+  if (model.has_elastic_solid()) selector.follow(particles, model.patch);
   write_back(model.patch, particles);
   update_temperatures();
   change_phases();
@@ -167,9 +170,9 @@ StepInfo Simulation::Impl::step(double t_stop) {
 
 /// How far particles may have moved since the lists were built and the light was traced.
 void Simulation::Impl::note_motion(double dt) {
-  if (!model.flows() || model.stage.moving.empty()) return;
+  if (!model.flows() || (model.stage.moving.empty() && model.stage.elastic.empty())) return;
   const auto moving = static_cast<std::ptrdiff_t>(model.stage.moving.size());
-  const double fastest = parallel_max(moving, 0.0, [&](std::ptrdiff_t k) {
+  const double fastest = parallel_max(moving, model.elastic_speed(), [&](std::ptrdiff_t k) {
     double v2 = 0;
     for (int c = 0; c < constants.dim; ++c) v2 += std::pow(model.patch.v[c][model.stage.moving[k]], 2);
     return std::sqrt(v2);
@@ -198,6 +201,8 @@ void Simulation::Impl::check(const StepReport& report) {
       first = i;
       break;
     }
+  for (Index i : model.stage.elastic)
+    if (first < 0 && bad(i)) first = i;
   for (Index i : model.stage.heated)
     if (first < 0 && !(std::abs(p.h[i]) < kHottest)) first = i;
   if (first < 0) return;
@@ -288,17 +293,20 @@ void Simulation::Impl::change_phases() {
       particles.phase[g] = static_cast<std::uint8_t>(Phase::liquid);
       particles.flags[g] |= kWasLiquid;
       if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
+      if (model.has_elastic_solid()) release(g);
       lists_valid = lists_valid && !model.flows();
     } else if (model.patch.liquid[i] && h <= solidus) {
       if (model.flows() && !touches_solid(i)) continue;
       for (int c = 0; c < constants.dim; ++c) {
         momentum.phase_change[c] -= particles.mass[g] * particles.v[c][g];
-        particles.v[c][g] = 0;
+        if (!model.has_elastic_solid()) particles.v[c][g] = 0;
       }
       selector.solidified(particles, g);
       particles.phase[g] = static_cast<std::uint8_t>(Phase::solid);
       particles.flags[g] |= kResolidified;
-      if (model.weakly_compressible()) particles.density[g] = constants.density;
+      if (model.weakly_compressible())
+        particles.density[g] = model.density_of_solid(particles.temperature[g]);
+      if (model.has_elastic_solid()) particles.flags[g] |= kMobile;
       lists_valid = lists_valid && !model.flows();
     }
   }

@@ -60,6 +60,9 @@ struct Simulation::Impl {
   void change_phases();
   void remove_escaped();
   void exchange_bulk(double until);
+  Index patch_reach() const;
+  const std::vector<std::uint8_t>& list_rows();
+  void release(Index particle);
   double stored_energy() const;
   double density_variation() const;
   Vec3 liquid_momentum() const;
@@ -83,7 +86,7 @@ struct Simulation::Impl {
 
   std::vector<double> y;
   std::vector<StateField> fields;
-  std::vector<std::uint8_t> on_surface, in_state, extra;
+  std::vector<std::uint8_t> on_surface, in_state, extra, with_elastic;
   std::vector<Index> in_state_list, surface_list;
   Counters counters;
   EnergyBudget energy;

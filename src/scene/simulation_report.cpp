@@ -129,7 +129,8 @@ std::vector<StepLimit> Simulation::step_limits() {
 
 std::vector<std::pair<std::string, std::size_t>> Simulation::memory() const {
   const Particles& p = impl_->particles;
-  return {{"particles", p.size() * (2 * p.dim + 5) * sizeof(double) + 3 * p.size()},
+  const int stresses = p.stress[0].empty() ? 0 : symmetric_count(p.dim);
+  return {{"particles", p.size() * (2 * p.dim + 5 + stresses) * sizeof(double) + 3 * p.size()},
           {"pair lists", impl_->model.pairs.bytes()},
           {"bulk conduction", impl_->bulk.bytes()},
           {"state vectors", impl_->y.capacity() * sizeof(double) * 20}};
@@ -245,6 +246,7 @@ std::vector<TermInfo> Simulation::terms() const {
                "explicit"),
           info("artificial_viscosity", s.terms.artificial_viscosity, "explicit"),
           info("thermal_expansion", s.flow.thermal_expansion, "explicit"),
+          info("elastic_solid", impl_->model.has_elastic_solid(), "explicit"),
           info("surface_tension", s.terms.surface_tension, projected),
           info("wetting", s.terms.wetting, projected),
           info("marangoni", s.terms.marangoni, "explicit"),

@@ -30,8 +30,11 @@ void prepare_stage(Stage& s) {
   s.loose.assign(n, 0);
   s.moving.clear();
   s.heated.clear();
+  s.elastic.clear();
+  const bool elastic = !s.patch->elastic.empty();
   for (Index i = 0; i < n; ++i) {
-    s.volume[i] = s.patch->mass[i] / s.constants->density;
+    s.volume[i] = s.patch->mass[i] / (elastic ? s.patch->density[i] : s.constants->density);
+    if (elastic && s.patch->elastic[i]) s.elastic.push_back(i);
     if (s.patch->liquid[i]) s.moving.push_back(i);
     if (s.heat[i]) s.heated.push_back(i);
   }

@@ -61,6 +61,15 @@ class Restart(Scratch):
         self.finish(two, "--threads", "2")
         self.assert_same_results(one, two, "projection in every stage")
 
+    def test_elastic_solid(self):
+        """Stress and the zone that moves are part of the state."""
+        option = [o for s in ("model=wcsph", "flow.elastic_modulus_scale=1e-4", "time.end_s=6e-5",
+                              "output.checkpoint_interval_s=2e-5") for o in ("--set", s)]
+        one = run(WELD, self.folder / "one", "--threads", "1", *option)
+        two = run(WELD, self.folder / "two", "--threads", "2", "--until", "3.1e-5", *option)
+        self.finish(two, "--threads", "2")
+        self.assert_same_results(one, two, "elastic solid")
+
     def test_kill(self):
         """kill -9 again and again, every second time in the middle of a write; threads change on the way."""
         chance = random.Random(SEED)

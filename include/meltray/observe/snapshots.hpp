@@ -22,8 +22,8 @@ struct SnapshotInfo {
 };
 
 /// Snapshots particles/000000.h5, ... (single precision, shuffle + gzip 1; positions and velocities always
-/// with three components) and the collection particles.xdmf over all of them, rewritten in one step after
-/// each.
+/// with three components; the stress after von Mises where solid is elastic) and the collection
+/// particles.xdmf over all of them, rewritten in one step after each.
 class Snapshots {
  public:
   /// Takes over the snapshots in `run_folder` that are not later than `time` and removes later ones; a new
@@ -46,7 +46,8 @@ class Snapshots {
 
   std::filesystem::path folder_;
   std::vector<Entry> entries_;
-  int next_ = 0;  ///< number in the name of the next file
+  bool has_stress_ = false;  ///< the scene has elastic solid
+  int next_ = 0;             ///< number in the name of the next file
 };
 
 }  // namespace meltray::observe

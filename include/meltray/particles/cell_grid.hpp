@@ -20,6 +20,12 @@ class CellGrid {
 
   int dim() const { return dim_; }
   Index cells() const { return count_[0] * count_[1] * count_[2]; }
+  /// Least width of a cell over the directions [m].
+  double width() const {
+    double least = 1e300;
+    for (int c = 0; c < dim_; ++c) least = std::min(least, 1 / inverse_width_[c]);
+    return least;
+  }
   /// Period in each direction [m]; 0 where not periodic.
   const std::array<double, 3>& period() const { return period_; }
 

@@ -13,9 +13,11 @@ enum class Phase : std::uint8_t { solid = 0, liquid = 1 };
 
 /// Bits of Particles::flags.
 enum Flag : std::uint8_t {
+  kClamped = 1,       ///< elastic solid that is held at its place and takes stress
   kResolidified = 2,  ///< was liquid and is solid again: the seam
   kRemoved = 4,       ///< left the scene (ejected or runaway): takes part in nothing
   kWasLiquid = 8,     ///< has been liquid at some time
+  kMobile = 16,       ///< solid of an elastic scene that moves at present
 };
 
 /// All particles of a scene as separate arrays. The order never changes, so an index is a particle's
@@ -26,6 +28,7 @@ struct Particles {
   Components v;                     ///< velocity [m/s]
   std::vector<double> h;            ///< specific enthalpy [J/kg]
   std::vector<double> density;      ///< [kg/m^3]; weakly compressible scenes only, else empty
+  SymmetricComponents stress;       ///< deviatoric stress S [Pa]; scenes with elastic solid only, else empty
   std::vector<double> mass;         ///< [kg] (per metre of depth in 2-D)
   std::vector<double> smoothing;    ///< smoothing length [m]; support radius is twice this
   std::vector<double> pressure;     ///< last pressure [Pa]; warm start of the Poisson solver

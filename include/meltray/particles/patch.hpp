@@ -19,11 +19,19 @@ struct Patch {
   Components x, v;
   std::vector<double> h, mass, smoothing, pressure;
   std::vector<double> density;       ///< empty where the store has none
+  SymmetricComponents stress;        ///< deviatoric stress S [Pa]; empty where the store has none
   std::vector<std::uint8_t> liquid;  ///< 1 = liquid
   std::vector<std::uint8_t> wall;    ///< 0, or 1 + index of the box face a dummy belongs to
 
+  /// Elastic::none, free or clamped; empty in scenes without elastic solid. Set by mark_elastic().
+  std::vector<std::uint8_t> elastic;
+
   Index size() const { return static_cast<Index>(global.size()); }
 };
+
+/// What a particle is to the elastic solid: melt, wall or solid that rests; solid that moves; solid that is
+/// held at its place but takes stress.
+enum class Elastic : std::uint8_t { none = 0, free = 1, clamped = 2 };
 
 /// Keeps track of which particle sits in which cell and selects patches.
 class PatchSelector {
@@ -38,9 +46,19 @@ class PatchSelector {
 
   /// Every particle of the scene.
   void select_all(const Particles& particles, Patch& patch);
-  /// Particles within two cells of a liquid particle or of one of `also`: rows of liquid particles, of the
-  /// solid ones next to them and of `also` then have all their neighbours in the patch.
-  void select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch);
+  /// Particles within `reach` cells of a liquid particle or of one of `also`. With two cells, rows of liquid
+  /// particles, of the solid ones next to them and of `also` have all their neighbours in the patch.
+  void select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,
+                        Index reach = 2);
+
+  /// Which solid of the patch is elastic: all of it after select_all(), else that within `distance` [m] of a
+  /// liquid particle; the patch then has to reach one cell farther. Solid that has moved and is no longer
+  /// among it comes to rest where it is.
+  void mark_elastic(Particles& particles, Patch& patch, double distance);
+  Index cells_across(double distance) const;
+  /// Elastic solid has moved in the patch but not yet in the store: it changes cells. Call before
+  /// write_back().
+  void follow(const Particles& particles, const Patch& patch);
 
   /// Resting particles in the cells of `centres` and the cells next to them.
   void select_resting_near(const Particles& particles, std::span<const Index> centres, Patch& patch);
@@ -63,11 +81,13 @@ class PatchSelector {
  private:
   void fill(const Particles& particles, Patch& patch, bool with_moving = true);
   void sort_moving(const Particles& particles);
+  bool near_melt(const Patch& patch, Index k, Index cell, double distance) const;
 
   CellGrid grid_;
   std::vector<std::vector<Index>> resting_;  ///< solid and wall particles by cell, ascending
   std::vector<Index> moving_;                ///< liquid particles, ascending
-  std::vector<std::uint8_t> core_, marked_;  ///< per cell
+  std::vector<std::uint8_t> core_, marked_;  ///< per cell; core_ empty: every cell
+  std::vector<std::uint8_t> moves_;          ///< per particle, of mark_elastic()
   std::vector<Index> moving_cell_, moving_sorted_, moving_start_;
 };
 

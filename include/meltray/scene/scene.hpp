@@ -51,6 +51,7 @@ struct Body {
        radii = Vec3::Zero();     ///< ball: semi-axes, so that an ellipsoid is a ball too [m]
   double temperature = 300;      ///< initial [K]
   Vec3 velocity = Vec3::Zero();  ///< initial [m/s]
+  bool clamped = false;          ///< elastic solid that stays at its place
 };
 
 /// [domain]: box, particles, gravity.
@@ -87,8 +88,12 @@ struct Flow {
   PressureGradient pressure_gradient = PressureGradient::difference;
   Tension tension = Tension::artificial_stress;
   DensityDiffusion density_diffusion = DensityDiffusion::antuono;
-  double diffusion_coefficient = 0.1;  ///< delta of the density diffusion
-  double artificial_viscosity = 1;     ///< alpha of Monaghan's viscosity
+  double diffusion_coefficient = 0.1;      ///< delta of the density diffusion
+  double artificial_viscosity = 1;         ///< alpha of Monaghan's viscosity
+  double elastic_modulus_scale = 1;        ///< of Young's modulus of elastic solid
+  double elastic_viscosity = 1;            ///< alpha of the artificial viscosity of elastic solid
+  double elastic_artificial_stress = 0.3;  ///< epsilon of Gray's artificial stress
+  double elastic_depth = 0;                ///< from the melt, within which solid moves [m]
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;

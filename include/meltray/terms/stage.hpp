@@ -50,6 +50,7 @@ struct Stage {
   std::vector<std::uint8_t> lit;    ///< 1: receives laser power
   std::vector<Index> moving;        ///< patch indices of liquid particles, ascending
   std::vector<Index> heated;        ///< patch indices with heat = 1, ascending
+  std::vector<Index> elastic;       ///< patch indices of elastic solid, ascending; empty without
 
   std::vector<double> excess;  ///< rho - rho_0(T) of a weakly compressible scene [kg/m^3]; else empty
 

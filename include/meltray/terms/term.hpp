@@ -11,9 +11,10 @@ namespace meltray::terms {
 
 /// Rates per patch particle that terms add to; a null pointer means that the field is not evolved.
 struct Rates {
-  MutField acceleration{};    ///< [m/s^2]
-  double* heating = nullptr;  ///< dh/dt [W/kg]
-  double* density = nullptr;  ///< d rho/dt [kg/(m^3 s)]
+  MutField acceleration{};          ///< [m/s^2]
+  double* heating = nullptr;        ///< dh/dt [W/kg]
+  double* density = nullptr;        ///< d rho/dt [kg/(m^3 s)]
+  std::array<double*, 6> stress{};  ///< dS/dt, upper triangle [Pa/s]
 };
 
 /// What crosses the boundary of the system or changes the melt's momentum, integrated as part of the state so

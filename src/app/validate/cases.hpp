@@ -48,6 +48,8 @@ Rows natural_convection(const Setting& setting);
 Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
 Rows hydrostatic(const Setting& setting);
+Rows elastic_plate(const Setting& setting);
+Rows constrained_expansion(const Setting& setting);
 Rows dam_break_martin_moyce(const Setting& setting);
 Rows absorptance_nist_316l(const Setting& setting);
 Rows keyhole_depth_xray(const Setting& setting);

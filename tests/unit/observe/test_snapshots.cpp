@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/hdf5_file.hpp"
@@ -58,6 +59,28 @@ TEST_CASE("a snapshot holds the particles that are neither wall nor removed") {
   CHECK(u == std::vector<std::uint8_t>{1, 0, 0});
   in.dataset("on_surface", u);
   CHECK(u == std::vector<std::uint8_t>{0, 1, 0});
+}
+
+TEST_CASE("a scene with elastic solid writes the stress after von Mises") {
+  TemporaryFolder t;
+  const int dim = GENERATE(2, 3);
+  Particles p = five(dim);
+  for (int c = 0; c < symmetric_count(dim); ++c) p.stress[c].assign(p.size(), 0.0);
+  p.stress[1][2] = 2;  // shear alone: sqrt(3) times it
+  // A tension of 3 along x leaves the deviator (2, -1, -1); in plane strain its y part is not stored.
+  p.stress[0][3] = 2;
+  p.stress[symmetric_count(dim) - 1][3] = -1;
+  if (dim == 3) p.stress[3][3] = -1;
+  fs::create_directory(t / "particles");
+  Snapshots out(t.path(), -1);
+  out.write(p, {0, 1e-4, "t", nullptr, nullptr});
+  std::vector<float> stress;
+  Hdf5Reader(read_bytes(t / "particles/000000.h5"), "s").dataset("von_mises_stress", stress);
+  REQUIRE(stress.size() == 3);
+  CHECK(stress[0] == Approx(2 * std::sqrt(3.0)));
+  CHECK(stress[1] == Approx(3));
+  CHECK(stress[2] == 0);
+  CHECK(read_text(t / "particles.xdmf").find("von_mises_stress") != std::string::npos);
 }
 
 TEST_CASE("the collection is extended on resume and forgets what comes after the checkpoint") {

@@ -169,3 +169,72 @@ TEST_CASE("write_back moves liquid only; enthalpy and pressure of all") {
   }
   CHECK(wrong == 0);
 }
+
+TEST_CASE("solid near the melt is elastic; what leaves that zone comes to rest") {
+  Block b;
+  b.melt(Vec3(0.5, 0.5, 1), 0.1);
+  PatchSelector selector(b.grid, b.p);
+  Patch patch;
+  constexpr double kDepth = 0.3;  // more than a cell
+  selector.select_near_melt(b.p, {}, patch, 1 + selector.cells_across(kDepth));
+  selector.mark_elastic(b.p, patch, kDepth);
+  std::vector<Index> melt;
+  for (Index i = 0; i < static_cast<Index>(b.p.size()); ++i)
+    if (b.p.is_liquid(i)) melt.push_back(i);
+  std::size_t wrong = 0;
+  for (Index i = 0; i < static_cast<Index>(b.p.size()); ++i) {
+    bool near = false;
+    for (const Index j : melt) near = near || (b.at(i) - b.at(j)).norm() < kDepth;
+    wrong += b.p.has(i, kMobile) != (near && !b.p.is_liquid(i) && !b.p.is_wall(i));
+  }
+  for (Index k = 0; k < patch.size(); ++k)
+    wrong +=
+        (patch.elastic[k] == static_cast<std::uint8_t>(Elastic::free)) != b.p.has(patch.global[k], kMobile);
+  CHECK(wrong == 0);
+
+  std::vector<bool> was;
+  for (std::size_t i = 0; i < b.p.size(); ++i) {
+    was.push_back(b.p.has(i, kMobile));
+    if (was[i]) b.p.v[0][i] = 1;
+    b.p.phase[i] = 0;  // the melt freezes; a new pool far from the old one
+  }
+  b.melt(Vec3(0.125, 0.125, 1), 0.05);
+  selector = PatchSelector(b.grid, b.p);
+  selector.select_near_melt(b.p, {}, patch, 1 + selector.cells_across(kDepth));
+  selector.mark_elastic(b.p, patch, kDepth);
+  std::size_t resting = 0, moving = 0;
+  for (std::size_t i = 0; i < b.p.size(); ++i) {
+    if (!was[i]) continue;
+    (b.p.has(i, kMobile) ? moving : resting) += 1;
+    CHECK(b.p.v[0][i] == (b.p.has(i, kMobile) ? 1 : 0));
+  }
+  CHECK(resting > 0);
+  CHECK(moving > 0);
+}
+
+TEST_CASE("elastic solid changes cells as it moves, and is found there") {
+  Block b;
+  for (auto& component : b.p.stress) component.assign(b.p.size(), 0.0);
+  PatchSelector selector(b.grid, b.p);
+  Patch patch;
+  selector.select_all(b.p, patch);
+  selector.mark_elastic(b.p, patch, 1);
+  Index moved = -1;
+  for (Index k = 0; k < patch.size(); ++k)
+    if (patch.elastic[k] && patch.x[0][k] > 0.2 && patch.x[0][k] < 0.25) {
+      patch.x[0][k] += 0.05;
+      moved = patch.global[k];
+    }
+  REQUIRE(moved >= 0);
+  selector.follow(b.p, patch);
+  write_back(patch, b.p);
+  CHECK(b.p.x[0][moved] > 0.25);
+  selector.melted(b.p, moved);  // looks for it in the cell where it is now
+  CHECK(selector.moving() == std::vector<Index>{moved});
+  PatchSelector fresh(b.grid, b.p);
+  Patch expected;
+  selector.solidified(b.p, moved);
+  selector.select_all(b.p, patch);
+  fresh.select_all(b.p, expected);
+  CHECK(patch.global == expected.global);
+}

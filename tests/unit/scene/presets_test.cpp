@@ -48,11 +48,13 @@ TEST_CASE("each key of a row can be overridden, and the difference is told") {
              Contains("wcsph_reduced") && Contains("terms.buoyancy = false instead of true"));
 }
 
-TEST_CASE("the first row needs an elastic solid, which is refused, or a fixed one") {
-  CHECK_THROWS_WITH(weld({"model=wcsph"}),
-                    Contains("flow.solid") && Contains("the elastic solid is not available"));
+TEST_CASE("the first row has expansion and an elastic solid, which can be fixed") {
+  const Scene full = weld({"model=wcsph"});
+  CHECK((full.flow.thermal_expansion && full.terms.artificial_viscosity && !full.terms.buoyancy));
+  CHECK(full.flow.solid == SolidModel::elastic);
+  CHECK(full.flow.elastic_modulus_scale == 1);
+  CHECK(row_of_table(full) == "wcsph");
   const Scene s = weld({"model=wcsph", "flow.solid=fixed"});
-  CHECK((s.flow.thermal_expansion && s.terms.artificial_viscosity && !s.terms.buoyancy));
   CHECK_THAT(row_of_table(s), Contains("flow.solid = fixed instead of elastic"));
 }
 

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "meltray/terms/elastic.hpp"
+#include "terms/elastic_vectors.hpp"
+
+/// Forces on elastic solid: by its own stress, its artificial viscosity, walls and melt.
+namespace meltray::terms {
+
+namespace {
+
+template <int D>
+using Vector = Eigen::Matrix<double, D, 1>;
+template <int D>
+using Matrix = Eigen::Matrix<double, D, D>;
+
+template <int D>
+Vector<D> vector(const std::array<double, D>& a) {
+  return Eigen::Map<const Vector<D>>(a.data());
+}
+
+/// Mean of (W / W(dx))^4 over the pairs of a lattice, each with its share -F x^2 in a stress: the artificial
+/// stress less this mean pushes near neighbours apart without making the lattice softer.
+template <int D, class Kernel>
+double mean_repulsion(const SceneConstants& k) {
+  const double inverse_h = 1 / k.smoothing, unit = Kernel::w(k.spacing, inverse_h);
+  const int reach = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing));
+  double sum = 0, all = 0;
+  for (int a = -reach; a <= reach; ++a)
+    for (int b = -reach; b <= reach; ++b)
+      for (int c = D == 3 ? -reach : 0; c <= (D == 3 ? reach : 0); ++c) {
+        const double r = k.spacing * std::sqrt(a * a + b * b + c * c);
+        const double share = -Kernel::f(r, inverse_h) * a * a, f = Kernel::w(r, inverse_h) / unit;
+        sum += share * f * f * f * f;
+        all += share;
+      }
+  return sum / all;
+}
+
+/// Force per volume by which stress behind slip faces differs from that of particle i: the images of its
+/// tractions are turned round in the shear along the face.
+template <int D>
+Vector<D> along_slip_faces(const Stage& s, Index i, const Matrix<D>& traction) {
+  Vector<D> force = Vector<D>::Zero();
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    if (!s.patch->wall[p.j]) return;
+    const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
+    if (face.no_slip) return;
+    Matrix<D> turned = Matrix<D>::Zero();
+    turned.row(face.axis) = -2 * traction.row(face.axis);
+    turned.col(face.axis) = -2 * traction.col(face.axis);
+    turned(face.axis, face.axis) = 0;
+    force += s.volume[p.j] * p.f * (turned * vector<D>(p.x));
+  });
+  return force;
+}
+
+/// Force per volume by the pressure of the melt, with that which the solid shows to the melt.
+template <int D>
+Vector<D> pressure_of_melt(const Stage& s, Index i) {
+  const double *const p = s.patch->pressure.data(), *const volume = s.volume.data();
+  const std::uint8_t* const liquid = s.patch->liquid.data();
+  const double own = p[i];
+  const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& q) {
+    const double g = liquid[q.j] ? -volume[q.j] * q.f * (own + p[q.j]) : 0.0;
+    std::array<double, D> out;
+    for (int c = 0; c < D; ++c) out[c] = g * q.x[c];
+    return out;
+  });
+  return vector<D>(sum) / s.constants->lattice.second_moment;
+}
+
+}  // namespace
+
+void ElasticSolid::add_rates(const Stage& s, const Rates& rates) const {
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    add_stress_rates<d>(s, rates);
+    add_acceleration<d>(s, rates.acceleration);
+  });
+}
+
+/// Per patch particle: how often its volume counts with the stress of the particle that it acts on (once in
+/// the solid, twice where it has none of its own), and its mass times the strength of its drag.
+void ElasticSolid::weigh(const Stage& s) const {
+  const double own_drag = viscosity * sound_speed(s.constants->density);
+  own_weight_.resize(s.size());
+  drag_.resize(s.size());
+  parallel_for(s.size(), [&](Index j) {
+    const int wall = s.patch->wall[j];
+    own_weight_[j] = solid_volume_[j] * (s.patch->elastic[j] ? 1 : 2);
+    drag_[j] = s.patch->mass[j] * (s.patch->liquid[j] ? melt_drag : own_drag);
+    if (wall && !s.constants->faces[wall - 1].no_slip) drag_[j] = 0;
+  });
+}
+
+template <int D>
+void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration) const {
+  weigh(s);
+  const Patch& patch = *s.patch;
+  const double h = s.constants->smoothing, softening = 0.01 * h * h;
+  const auto tensor = [&](Index i, int which) { return entry<Columns<D>>(tensors_.data(), 2 * i + which); };
+  with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+    using Kernel = decltype(kernel);
+    const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / h);
+    const double mean = mean_repulsion<D, Kernel>(*s.constants);
+    parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
+      const Index i = s.elastic[k];
+      if (patch.elastic[i] != static_cast<std::uint8_t>(Elastic::free)) return;
+      const double rho = patch.density[i];
+      const Lane<D> vi = entry<Lane<D>>(velocity_.data(), i);
+      // Sums that meet the stress of i, the artificial one with f^4, the stress of the neighbours, the drag.
+      Lane<D> own = Lane<D>::Zero(), near = own, others = own, drag = own;
+      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+        if (p.f == 0) return;
+        const Lane<D> x = padded<D>(p.x);
+        const double along = (vi - entry<Lane<D>>(velocity_.data(), p.j)).dot(x);
+        const double mean_density = 0.5 * (rho + patch.density[p.j]);
+        drag += drag_[p.j] * p.f * std::min(along, 0.0) / (mean_density * (p.r2() + softening)) * x;
+        const double f = p.w * inverse_w, f4 = f * f * f * f - mean, g = own_weight_[p.j] * p.f;
+        own += g * x;
+        near += g * f4 * x;
+        if (!patch.elastic[p.j]) return;
+        const auto traction = tensor(p.j, 0), repelling = tensor(p.j, 1);
+        for (int b = 0; b < D; ++b) others += g * p.x[b] * (traction.col(b) + f4 * repelling.col(b));
+      });
+      const Matrix<D> traction = tensor(i, 0).template topRows<D>(),
+                      repelling = tensor(i, 1).template topRows<D>();
+      Vector<D> force =
+          traction * own.template head<D>() + repelling * near.template head<D>() + others.template head<D>();
+      if (s.pairs->next_to_wall()[i]) force += along_slip_faces<D>(s, i, traction);
+      if (s.pairs->next_to_melt()[i]) force += pressure_of_melt<D>(s, i);
+      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho + h * drag[c];
+      acceleration[D - 1][i] -= gravity;
+    });
+  });
+}
+
+}  // namespace meltray::terms
