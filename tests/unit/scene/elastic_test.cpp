@@ -92,7 +92,7 @@ TEST_CASE("a rotating elastic block keeps its motion and takes no stress but tha
   CHECK(p.x[1][19] == Approx(0.475).margin(0.01));
 }
 
-TEST_CASE("solid that melts drops its stress and keeps its motion; solid that forms has none") {
+TEST_CASE("solid that melts drops its stress and keeps its motion") {
   Simulation s(block({"terms.conduction=true", "terms.melting=true"}));
   Particles& p = s.particles();
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -109,14 +109,29 @@ TEST_CASE("solid that melts drops its stress and keeps its motion; solid that fo
   CHECK(p.density[i] == Approx(1).epsilon(1e-9));
   CHECK(p.v[0][i] == Approx(0.5).epsilon(0.01));
   CHECK(s.momentum().current[0] == Approx(s.momentum().phase_change[0]).epsilon(1e-12));
+}
 
+TEST_CASE("solid that forms starts without stress and keeps its motion") {
+  const std::string pool = R"(
+[[bodies]]
+shape = "ball"
+center_m = [0.0, 0.0]
+radii_m = [0.06, 0.06]
+temperature_k = 350.0
+velocity_m_s = [0.5, 0.0]
+)";
+  Simulation s(read_case_text(kBlock + pool, "pool", {"terms.conduction=true", "terms.melting=true"}));
+  Particles& p = s.particles();
+  std::size_t i = 0;
+  while (!p.is_liquid(i)) ++i;
+  p.density[i] = 1.01;
   set_temperature(s, i, 200);
   s.step(1.0);
   CHECK(!p.is_liquid(i));
   CHECK(p.has(i, kResolidified));
   for (int c = 0; c < 3; ++c) CHECK(p.stress[c][i] == 0);
   CHECK(p.density[i] == 1);
-  CHECK(p.v[0][i] == Approx(0.5).epsilon(0.05));
+  CHECK(p.v[0][i] == Approx(0.5).epsilon(0.2));
 }
 
 TEST_CASE("a scene without elastic solid has no stress and none in its state") {
@@ -156,8 +171,8 @@ TEST_CASE("the elastic step is that of longitudinal waves, and grows with the ro
 TEST_CASE("elastic solid gives the same bits with one thread and two") {
   const auto after = [](int n) {
     set_threads(n);
-    Simulation s(block({"domain.spacing_m=0.025", "domain.velocity_field=rotation",
-                        "domain.velocity_scale_m_s=0.3"}));
+    Simulation s(
+        block({"domain.spacing_m=0.025", "domain.velocity_field=rotation", "domain.velocity_scale_m_s=0.3"}));
     for (int k = 0; k < 20; ++k) s.step(10.0);
     return s.particles();
   };
