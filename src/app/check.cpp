@@ -210,11 +210,13 @@ void print_elastic(const Scene& s) {
   line("longitudinal sound [m/s]", fmt::format("{:.4g}", solid.sound_speed(rho)));
   line("elastic step [s]", fmt::format("{:.3g}", step));
   if (scale < 1)
-    line("modulus scale", fmt::format("{:g}: steps {:.3g} times those of the full modulus ({:.3g} s), strains "
-                                      "under load {:.3g} times; stresses are not the material's",
-                                      scale, 1 / std::sqrt(scale), step * std::sqrt(scale), 1 / scale));
+    line("modulus scale",
+         fmt::format("{:g}: steps {:.3g} times those of the full modulus ({:.3g} s), strains "
+                     "under load {:.3g} times; stresses are not the material's",
+                     scale, 1 / std::sqrt(scale), step * std::sqrt(scale), 1 / scale));
   else
-    line("modulus scale", "1; 0.01 would make steps ten times longer and strains under load 100 times larger");
+    line("modulus scale",
+         "1; 0.01 would make steps ten times longer and strains under load 100 times larger");
 }
 
 void print_laser(const Scene& s) {

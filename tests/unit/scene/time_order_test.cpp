@@ -91,8 +91,9 @@ TEST_CASE("order in time: vortices with conduction and a viscosity that depends 
     int order;
     double step;
   };
+  // Order 4 takes longer steps: the pairs, in single precision, round at errors of 1e-9.
   const auto c = GENERATE(Case{Method::imex, 2, 0.04 / 20}, Case{Method::imex, 3, 0.04 / 10},
-                          Case{Method::imex, 4, 0.04 / 10}, Case{Method::explicit_rk, 3, 0.04 / 10},
+                          Case{Method::imex, 4, 0.04 / 6}, Case{Method::explicit_rk, 3, 0.04 / 10},
                           Case{Method::multirate, 3, 0.04 / 10});
   const double coarse = distance(solution(c.method, c.order, c.step), exact);
   const double fine = distance(solution(c.method, c.order, c.step / 2), exact);
