@@ -10,14 +10,10 @@ namespace meltray::scene {
 
 namespace {
 
-/// Bulk conduction looks for newly warm particles every so many exchanges.
-constexpr int kExchangesPerBuild = 10;
 /// Faster than this a particle is a numerical failure [m/s].
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
-/// A melt particle nearer than this to a solid one solidifies on it [spacings].
-constexpr double kContact = 1.5;
 /// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
 constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
 
@@ -263,105 +259,6 @@ void Simulation::Impl::mark_surface() {
       on_surface[model.patch.global[i]] = 1;
       surface_list.push_back(model.patch.global[i]);
     }
-}
-
-bool Simulation::Impl::touches_solid(Index i) const {
-  const double contact = kContact * constants.spacing;
-  for (Index k = model.pairs.begin(i); k < model.pairs.end(i); ++k) {
-    const Index j = model.pairs.neighbour(k);
-    if (model.patch.liquid[j]) continue;
-    double r2 = 0;
-    for (int c = 0; c < constants.dim; ++c)
-      r2 += std::pow(model.pairs.nearest(c, model.patch.x[c][i] - model.patch.x[c][j]), 2);
-    if (r2 < contact * contact) return true;
-  }
-  return false;
-}
-
-/// Melting above the liquidus, solidification below the solidus on something solid (a drop in flight stays
-/// liquid until it touches). Frozen over a step, updated between steps.
-void Simulation::Impl::change_phases() {
-  if (!scene.terms.melting) return;
-  const auto timer = timers.measure(Part::phase);
-  const double liquidus = constants.material.enthalpy_liquidus(),
-               solidus = constants.material.enthalpy_solidus();
-  for (Index i : model.stage.heated) {
-    const Index g = model.patch.global[i];
-    const double h = model.patch.h[i];
-    if (!model.patch.liquid[i] && h >= liquidus) {
-      selector.melted(particles, g);
-      particles.phase[g] = static_cast<std::uint8_t>(Phase::liquid);
-      particles.flags[g] |= kWasLiquid;
-      if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
-      if (model.has_elastic_solid()) release(g);
-      lists_valid = lists_valid && !model.flows();
-    } else if (model.patch.liquid[i] && h <= solidus) {
-      if (model.flows() && !touches_solid(i)) continue;
-      for (int c = 0; c < constants.dim; ++c) {
-        momentum.phase_change[c] -= particles.mass[g] * particles.v[c][g];
-        if (!model.has_elastic_solid()) particles.v[c][g] = 0;
-      }
-      selector.solidified(particles, g);
-      particles.phase[g] = static_cast<std::uint8_t>(Phase::solid);
-      particles.flags[g] |= kResolidified;
-      if (model.weakly_compressible())
-        particles.density[g] = model.density_of_solid(particles.temperature[g]);
-      if (model.has_elastic_solid()) particles.flags[g] |= kMobile;
-      lists_valid = lists_valid && !model.flows();
-    }
-  }
-}
-
-/// Liquid that leaves the box through a free face is ejected. One that overshoots a wall by less than a
-/// spacing is held at it, at the cost of its velocity into the wall (an impulse of the pressure), and counts
-/// as clamped; farther behind it is a loss of the cropping and counts as removed. Periodic directions wrap
-/// around.
-void Simulation::Impl::remove_escaped() {
-  for (Index i : model.stage.moving) {
-    const Index g = model.patch.global[i];
-    bool outside = false, through_wall = false;
-    for (int c = 0; c < constants.dim; ++c) {
-      double& x = particles.x[c][g];
-      const double period = selector.grid().period()[c];
-      if (period > 0) {
-        x -= period * std::floor((x - scene.domain.min[c]) / period);
-        continue;
-      }
-      const bool below = x<scene.domain.min[c], above = x> scene.domain.max[c];
-      if (!below && !above) continue;
-      const int face = 2 * (constants.dim == 2 && c == 1 ? 2 : c) + (above ? 1 : 0);
-      const double plane = above ? scene.domain.max[c] : scene.domain.min[c];
-      if (scene.domain.faces[face].kind == FaceKind::wall && std::abs(x - plane) < constants.spacing) {
-        const bool outwards = above == (particles.v[c][g] > 0);
-        if (outwards) {
-          momentum.pressure[c] -= particles.mass[g] * particles.v[c][g];
-          particles.v[c][g] = 0;
-        }
-        x = plane;
-        ++counters.clamped;
-        continue;
-      }
-      outside = true;
-      through_wall = through_wall || scene.domain.faces[face].kind == FaceKind::wall;
-    }
-    if (!outside) continue;
-    particles.flags[g] |= kRemoved;
-    (through_wall ? energy.cropped : energy.ejected) += particles.mass[g] * particles.h[g];
-    (through_wall ? mass.cropped : mass.ejected) += particles.mass[g];
-    ++(through_wall ? counters.removed : counters.ejected);
-    for (int c = 0; c < constants.dim; ++c) momentum.ejected[c] += particles.mass[g] * particles.v[c][g];
-    lists_valid = false;
-  }
-}
-
-void Simulation::Impl::exchange_bulk(double until) {
-  if (until < next_bulk) return;
-  const auto timer = timers.measure(Part::heat);
-  if (bulk_exchanges++ % kExchangesPerBuild == 0)
-    bulk.build(constants, selector, particles, scene.heat.initial_temperature);
-  bulk.exchange(constants, until - bulk_from, in_state, particles);
-  bulk_from = until;
-  next_bulk = until + scene.heat.bulk_interval;
 }
 
 }  // namespace meltray::scene

@@ -26,8 +26,8 @@ inline double skin(const Scene& scene) {
   return !follows_melt(scene) ? kSkin : keeps_lists(scene) ? kSkinOfSound : kSkinOfStep;
 }
 
-/// State of a simulation; its steps are in simulation.cpp, what it reports and saves in
-/// simulation_report.cpp.
+/// State of a simulation; its steps are in simulation.cpp, what happens between them in
+/// simulation_events.cpp, what it reports and saves in simulation_report.cpp.
 struct Simulation::Impl {
   explicit Impl(Scene s)
       : scene(std::move(s)),
