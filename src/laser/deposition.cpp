@@ -56,8 +56,9 @@ double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double*
   const auto count = static_cast<std::ptrdiff_t>(hits.size());
   const std::ptrdiff_t blocks = (count + kHitsPerBlock - 1) / kHitsPerBlock;
   std::vector<std::vector<Share>> shares(static_cast<std::size_t>(blocks));
+  const auto lost = [&](const Hit& hit) { return points.empty() || !hit.position.allFinite(); };
   const auto share_out = [&](const Hit& hit, std::vector<Share>& out) {
-    if (points.empty() || !hit.position.allFinite()) return;
+    if (lost(hit)) return;
     const std::size_t first = out.size();
     double sum = 0;
     grid.near(hit.position, radius, [&](std::size_t i, const Vec3& point) {
@@ -80,7 +81,7 @@ double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double*
     for (const Share& s : block) power[s.particle] += s.power;
   double undeposited = 0;
   for (const Hit& hit : hits)
-    if (points.empty() || !hit.position.allFinite()) undeposited += hit.power;
+    if (lost(hit)) undeposited += hit.power;
   return undeposited;
 }
 

@@ -120,6 +120,7 @@ class Model : public OdeProblem {
   bool solve_viscous(double gamma, const double* known, const Components& resting, double* v, Vec3& impulse);
   Vec3 total_force() const;
   Vec3 force_gained();
+  void note_largest_acceleration();
   void add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
   void pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings);
   void count_solve(const solve::SolveReport& report, double t);

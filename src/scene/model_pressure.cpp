@@ -46,6 +46,12 @@ void Model::project(double dt) {
       const Index i = stage.moving[k];
       patch.v[c][i] += dt * acceleration_[c][i];
     });
+  note_largest_acceleration();
+}
+
+/// Of the accelerations gathered so far, without loose drops.
+void Model::note_largest_acceleration() {
+  const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
   largest_acceleration = parallel_max(count, 0.0, [&](std::ptrdiff_t k) {
     const Index i = stage.moving[k];
     double a2 = 0;

@@ -55,13 +55,7 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
     crossings.viscosity += force_gained();
   }
   if (has_elastic_solid()) add_elastic_rates(rates);
-  largest_acceleration =
-      parallel_max(static_cast<std::ptrdiff_t>(stage.moving.size()), 0.0, [&](std::ptrdiff_t k) {
-        const Index i = stage.moving[k];
-        double a2 = 0;
-        for (int c = 0; c < constants_.dim; ++c) a2 += acceleration_[c][i] * acceleration_[c][i];
-        return stage.loose[i] ? 0.0 : std::sqrt(a2);
-      });
+  note_largest_acceleration();
 }
 
 double Model::acoustic_step(double speed) const {
