@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <malloc.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -19,9 +20,17 @@ void start_with_short_spinning(char** argv) {
   if (!error && setenv("GOMP_SPINCOUNT", "20000", 1) == 0) execv(program.c_str(), argv);
 }
 
+/// Arrays of a step are megabytes: got from and given back to the system each time, every page of them is
+/// cleared anew (measured: 870 pages a step of a weld).
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   start_with_short_spinning(argv);
+  keep_memory();
   return meltray::app::run_command_line(argc, argv);
 }

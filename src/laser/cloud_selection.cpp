@@ -50,6 +50,8 @@ void mirror(CloudSelection& s, int axis, double plane, int outward, double reach
 
 CloudSelection select_cloud(const PointCloud& cloud, const Box& region, double margin) {
   CloudSelection s;
+  s.position.reserve(cloud.size);
+  s.liquid.reserve(cloud.size);
   const Vec3 low = region.min.array() - margin, high = region.max.array() + margin;
   for (std::size_t i = 0; i < cloud.size; ++i) {
     const Vec3 x(cloud.position[0][i], cloud.position[1][i], cloud.position[2][i]);

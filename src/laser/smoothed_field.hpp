@@ -18,6 +18,8 @@ namespace meltray::laser {
 /// So wide a kernel closes a slit narrower than 1.2 spacings and bends the walls of a wider one. In slits the
 /// field is therefore lowered by a multiple of what it exceeds that of a sharper kernel, deviation 0.54
 /// spacings: unsharp masking of voids alone. Flat walls, drops and films keep their field.
+///
+/// Nodes are in single precision: 1e-7 of a spacing is far below what one particle more or less moves.
 class SmoothedField {
  public:
   /// The cells cover `extent`; their corners are multiples of the step, so a region that moves with the
@@ -48,13 +50,13 @@ class SmoothedField {
   bool liquid(const Cell& cell, const Vec3& local) const;
 
  private:
-  void spread(const CloudSelection& cloud, double share);
+  void spread(const CloudSelection& cloud, float share);
   void mark_phases(const CloudSelection& cloud);
   /// Turns what the particles have spread into the coefficients of the field.
   void open_slits();
   void evaluate_corners();
   /// Value and gradient of the spline with the given coefficients.
-  Sample evaluate(const std::vector<double>& coefficients, const Cell& cell, const Vec3& local) const;
+  Sample evaluate(const std::vector<float>& coefficients, const Cell& cell, const Vec3& local) const;
   std::size_t node(const Cell& c) const {
     return static_cast<std::size_t>(((c[2] + kPad[2]) * nodes_[1] + c[1] + kPad[1]) * nodes_[0] + c[0] +
                                     kPad[0]);
@@ -68,8 +70,8 @@ class SmoothedField {
   Vec3 origin_;
   Cell cells_, nodes_;
   // By node: spline coefficients; liquid less solid particles, empty without liquid.
-  std::vector<double> metal_, excess_;
-  std::vector<double> corner_value_;
+  std::vector<float> metal_, excess_;
+  std::vector<float> corner_value_;
 };
 
 }  // namespace meltray::laser

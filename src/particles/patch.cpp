@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "meltray/core/collect.hpp"
 #include "meltray/core/parallel.hpp"
 
 namespace meltray {
@@ -42,6 +43,7 @@ void PatchSelector::solidified(const Particles& particles, Index i) {
 void PatchSelector::select_all(const Particles& particles, Patch& patch) {
   core_.clear();
   marked_.assign(grid_.cells(), 1);
+  sort_moving(particles);
   fill(particles, patch);
 }
 
@@ -50,20 +52,19 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
   core_.assign(grid_.cells(), 0);
   marked_.assign(grid_.cells(), 0);
   const auto x = view(particles.x);
-  const auto mark = [&](Index i) {
-    const Index cell = grid_.cell(x, i);
+  const auto mark = [&](Index cell) {
     if (core_[cell]) return;
     core_[cell] = 1;
     grid_.for_block(cell, reach, [&](Index k) { marked_[k] = 1; });
   };
-  for (Index i : moving_)
-    if (!particles.has(i, kRemoved)) mark(i);
-  for (Index i : also) mark(i);
+  sort_moving(particles);
+  for (Index cell = 0; cell < grid_.cells(); ++cell)
+    if (moving_start_[cell + 1] > moving_start_[cell]) mark(cell);
+  for (Index i : also) mark(grid_.cell(x, i));
   fill(particles, patch);
 }
 
-void PatchSelector::select_resting_near(const Particles& particles, std::span<const Index> centres,
-                                        Patch& patch) {
+void PatchSelector::select_around(const Particles& particles, std::span<const Index> centres, Patch& patch) {
   core_.assign(grid_.cells(), 0);
   marked_.assign(grid_.cells(), 0);
   const auto x = view(particles.x);
@@ -73,24 +74,28 @@ void PatchSelector::select_resting_near(const Particles& particles, std::span<co
     core_[cell] = 1;
     grid_.for_block(cell, 1, [&](Index k) { marked_[k] = 1; });
   }
-  fill(particles, patch, false);
+  sort_moving(particles);
+  fill(particles, patch);
 }
 
 void PatchSelector::gather(const Particles& particles, const Vec3& min, const Vec3& max,
                            std::vector<Index>& out) const {
-  out.clear();
   const auto x = view(particles.x);
-  const auto inside = [&](Index i) {
+  const auto take = [&](Index i, std::vector<Index>& found) {
     for (int c = 0; c < particles.dim; ++c)
-      if (x[c][i] < min[c] || x[c][i] > max[c]) return false;
-    return true;
+      if (x[c][i] < min[c] || x[c][i] > max[c]) return;
+    found.push_back(i);
   };
-  grid_.for_box(min, max, [&](Index cell) {
-    for (Index i : resting_[cell])
-      if (inside(i)) out.push_back(i);
+  std::vector<Index> cells;
+  grid_.for_box(min, max, [&](Index cell) { cells.push_back(cell); });
+  const auto resting = static_cast<std::ptrdiff_t>(cells.size()),
+             moving = static_cast<std::ptrdiff_t>(moving_.size());
+  parallel_collect(resting + moving, 256, out, [&](std::ptrdiff_t k, std::vector<Index>& found) {
+    if (k < resting)
+      for (Index i : resting_[cells[k]]) take(i, found);
+    else if (!particles.has(moving_[k - resting], kRemoved))
+      take(moving_[k - resting], found);
   });
-  for (Index i : moving_)
-    if (!particles.has(i, kRemoved) && inside(i)) out.push_back(i);
 }
 
 /// Counting sort of the moving particles by cell; ascending indices within a cell.
@@ -100,10 +105,9 @@ void PatchSelector::sort_moving(const Particles& particles) {
   const Index cells = grid_.cells();
   moving_start_.assign(cells + 1, 0);
   moving_cell_.resize(moving_.size());
-  for (std::size_t k = 0; k < moving_.size(); ++k) {
-    moving_cell_[k] = grid_.cell(x, moving_[k]);
-    ++moving_start_[moving_cell_[k] + 1];
-  }
+  parallel_for(static_cast<std::ptrdiff_t>(moving_.size()),
+               [&](std::ptrdiff_t k) { moving_cell_[k] = grid_.cell(x, moving_[k]); });
+  for (const Index cell : moving_cell_) ++moving_start_[cell + 1];
   for (Index c = 0; c < cells; ++c) moving_start_[c + 1] += moving_start_[c];
   moving_sorted_.resize(moving_.size());
   for (std::size_t k = 0; k < moving_.size(); ++k)
@@ -112,8 +116,8 @@ void PatchSelector::sort_moving(const Particles& particles) {
   moving_start_[0] = 0;
 }
 
-void PatchSelector::fill(const Particles& particles, Patch& patch, bool with_moving) {
-  if (with_moving) sort_moving(particles);
+/// The marked cells' resting particles and the moving ones that sort_moving() has sorted.
+void PatchSelector::fill(const Particles& particles, Patch& patch) {
   const Index cells = grid_.cells();
   patch.dim = particles.dim;
   patch.global.clear();
@@ -121,9 +125,8 @@ void PatchSelector::fill(const Particles& particles, Patch& patch, bool with_mov
   for (Index c = 0; c < cells; ++c) {
     patch.cell_start[c] = patch.size();
     if (!marked_[c]) continue;
-    if (with_moving)
-      patch.global.insert(patch.global.end(), moving_sorted_.begin() + moving_start_[c],
-                          moving_sorted_.begin() + moving_start_[c + 1]);
+    patch.global.insert(patch.global.end(), moving_sorted_.begin() + moving_start_[c],
+                        moving_sorted_.begin() + moving_start_[c + 1]);
     patch.global.insert(patch.global.end(), resting_[c].begin(), resting_[c].end());
   }
   patch.cell_start[cells] = patch.size();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meltray/core/collect.hpp"
 #include "meltray/scene/optics.hpp"
 
 namespace meltray::scene {
@@ -13,6 +14,8 @@ namespace {
 /// Hits reach surface particles within this many spacings: a hit on the isosurface is half a spacing above
 /// the centres of the outermost layer and at most 0.9 spacings from the nearest of them.
 constexpr double kDepositRadius = 1.3;
+/// Hits that share a cube of this many spacings look for their particles together.
+constexpr double kHitGroup = 0.5;
 
 laser::TraceOptions options_of(const Scene& scene) {
   laser::TraceOptions o = scene.laser->trace;
@@ -78,6 +81,8 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
 
   hits_.clear();
   ledger_ = {};
+  groups_.clear();
+  lost_ = 0;
   lit_.clear();
   if (beam_.power(t) <= 0) return;
   const auto rays = beam_.rays(t, scene_.laser->trace.rays, box.max[2] + constants_.spacing);
@@ -89,29 +94,24 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   budget_.worst = std::max(budget_.worst, error / ledger_.in);
   ++budget_.traces;
   budget_.dropped_rays += ledger_.dropped_rays;
-  // Thousands of hits lie side by side: look around each half-spacing voxel only once.
-  const double voxel = 0.5 * constants_.spacing, radius = kDepositRadius * constants_.spacing + voxel;
-  std::vector<std::array<int, 3>> voxels;
-  voxels.reserve(hits_.size());
-  for (const laser::Hit& hit : hits_) {
-    std::array<int, 3> key;
-    for (int c = 0; c < 3; ++c) key[c] = static_cast<int>(std::floor(hit.position[c] / voxel));
-    voxels.push_back(key);
-  }
-  std::sort(voxels.begin(), voxels.end());
-  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-  std::vector<Index> near;
-  for (const auto& key : voxels)
-    selector.for_resting_near(particles, voxel * Vec3(key[0] + 0.5, key[1] + 0.5, key[2] + 0.5), radius,
-                              [&](Index i) { near.push_back(i); });
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  lit_ = std::move(near);
+  group_hits();
+  const double radius = (kDepositRadius + kHitGroup) * constants_.spacing;
+  parallel_collect(static_cast<std::ptrdiff_t>(groups_.size()), 64, lit_,
+                   [&](std::ptrdiff_t g, std::vector<Index>& near) {
+                     selector.for_resting_near(particles, groups_[static_cast<std::size_t>(g)].centre, radius,
+                                               [&](Index i) { near.push_back(i); });
+                   });
+  std::sort(lit_.begin(), lit_.end());
+  lit_.erase(std::unique(lit_.begin(), lit_.end()), lit_.end());
+}
+
+void LaserCoupling::group_hits() {
+  groups_ = laser::group_hits(hits_, kHitGroup * constants_.spacing, lost_);
 }
 
 void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& power) {
   power.assign(stage.size(), 0.0);
-  undeposited_ = 0;
+  undeposited_ = lost_;
   if (hits_.empty()) return;
   // Only surface particles take part; the cloud handed over is just them.
   cloud_.clear();
@@ -128,8 +128,8 @@ void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& powe
   cloud_power_.assign(cloud_.size(), 0.0);
   const laser::PointCloud cloud{
       {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr, constants_.spacing};
-  undeposited_ =
-      laser::deposit(hits_, cloud, weight_.data(), kDepositRadius * constants_.spacing, cloud_power_.data());
+  undeposited_ += laser::deposit(hits_, groups_, cloud, weight_.data(), kDepositRadius * constants_.spacing,
+                                 cloud_power_.data());
   for (std::size_t k = 0; k < cloud_.size(); ++k) power[cloud_[k]] = cloud_power_[k];
 }
 
@@ -167,6 +167,7 @@ void LaserCoupling::archive(Archive& a) {
     hits_.clear();
     for (std::size_t k = 0; k + 3 < hits.size(); k += 4)
       hits_.push_back({Vec3(hits[k], hits[k + 1], hits[k + 2]), hits[k + 3]});
+    group_hits();
   }
   stale_ = true;
 }

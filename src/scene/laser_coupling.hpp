@@ -37,6 +37,7 @@ class LaserCoupling {
   void archive(Archive& a);
 
  private:
+  void group_hits();
   laser::Box region(double t, const Particles& particles, const PatchSelector& selector) const;
 
   const Scene& scene_;
@@ -44,10 +45,12 @@ class LaserCoupling {
   laser::Beam beam_;
   laser::Tracer tracer_;
   std::vector<laser::Hit> hits_;
+  std::vector<laser::HitGroup> groups_;  ///< of hits_
   laser::Ledger ledger_;
   LaserBudget budget_;
   std::vector<Index> lit_;
   double next_trace_ = 0, motion_ = 0, undeposited_ = 0;
+  double lost_ = 0;  ///< power of hits at no finite place [W]
   bool stale_ = true;
   std::vector<double> weight_, cloud_power_, cx_[3];
   std::vector<Index> cloud_;

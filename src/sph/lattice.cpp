@@ -8,7 +8,7 @@
 namespace meltray::sph {
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing) {
-  LatticeSums sums{0, 0, 0, 0, 0, 0};
+  LatticeSums sums{0, 0, 0, 0, 0, 0, 0, 0};
   const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
   const double volume = std::pow(spacing, dim), inv_h = 1 / smoothing;
   double face = 0;
@@ -29,12 +29,17 @@ LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoo
             if (a > 0) continue;
             face += f * x;
             sums.face_diagonal -= f;
+            const double along = f * std::pow(b * spacing, 2);
+            sums.face_moment -= along;
+            if (a == 0) sums.layer_moment -= along;
           }
     });
   });
   sums.face_gradient = 2 * std::abs(face) * spacing;
   sums.face_fill /= sums.shepard;
   sums.face_diagonal /= sums.laplacian;
+  sums.face_moment /= sums.second_moment;
+  sums.layer_moment /= sums.second_moment;
   return sums;
 }
 

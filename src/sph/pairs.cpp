@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -125,18 +126,21 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   search(patch, grid, skin, wanted_);
 
   next_to_melt_.assign(n, 0);
-  for (const Block& b : blocks_) {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    const Block& b = blocks_[block];
     std::size_t k = 0;
     for (std::size_t r = 0; r < b.row.size(); ++r) {
       const std::size_t end = k + b.count[r];
       if (patch.liquid[b.row[r]])
-        for (; k < end; ++k) next_to_melt_[b.entries[k]] = 1;
+        for (; k < end; ++k)  // several blocks may mark the same particle
+          if (const Index j = b.entries[k]; !patch.liquid[j])
+            std::atomic_ref(next_to_melt_[j]).store(1, std::memory_order_relaxed);
       k = end;
     }
   }
   bool more = false;
   for (Index i = 0; i < n; ++i) {
-    next_to_melt_[i] = next_to_melt_[i] && !patch.liquid[i];
     wanted_[i] = next_to_melt_[i] && !wanted_[i];
     more = more || wanted_[i];
   }

@@ -21,7 +21,7 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
   for (Index i = 0; i < static_cast<Index>(particles.size()); ++i)
     if (!rests(i) && !particles.is_liquid(i) && !particles.is_wall(i) && !particles.has(i, kRemoved))
       awake_.push_back(i);
-  selector.select_resting_near(particles, awake_, patch_);
+  selector.select_around(particles, awake_, patch_);
   const Index n = patch_.size();
   row_wanted_.resize(n);
   for (Index i = 0; i < n; ++i) row_wanted_[i] = !patch_.wall[i];
@@ -38,6 +38,7 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
   k_.resize(pairs_.pairs());
   row_end_.resize(n);
   lambda_.resize(n);
+  missing_.resize(n);
   at_rest_.resize(n);
   parallel_for(n, [&](Index i) {
     lambda_[i] = patch_.wall[i] ? 0.0 : material.conductivity(patch_.h[i]);
@@ -48,23 +49,37 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
     constexpr int D = d;
     with_kernel<D>(constants.kernel, [&](auto kernel) {
       using Kernel = decltype(kernel);
+      const auto volume = [&](Index i) { return patch_.mass[i] / constants.density; };
+      const auto distance = [&](Index i, Index j) {
+        double r2 = 0;
+        for (int c = 0; c < D; ++c) r2 += std::pow(pairs_.nearest(c, patch_.x[c][i] - patch_.x[c][j]), 2);
+        return std::sqrt(r2);
+      };
+      // Particles at rest count as inside: their neighbours need not all be in the patch.
       parallel_for(n, [&](Index i) {
-        const double vi = patch_.mass[i] / constants.density, li = lambda_[i], hi = patch_.smoothing[i];
-        Index out = pairs_.begin(i);
+        missing_[i] = 0;
+        if (patch_.wall[i] || patch_.liquid[i] || at_rest_[i]) return;
+        double sum = volume(i) * Kernel::w(0.0, 1 / patch_.smoothing[i]);
         for (Index q = pairs_.begin(i); q < pairs_.end(i); ++q) {
           const Index j = pairs_.neighbour(q);
-          if (patch_.wall[j] || (at_rest_[i] && at_rest_[j])) continue;
-          double r2 = 0;
-          for (int c = 0; c < D; ++c) {
-            const double x = pairs_.nearest(c, patch_.x[c][i] - patch_.x[c][j]);
-            r2 += x * x;
-          }
-          const double f = Kernel::f(std::sqrt(r2), 2 / (hi + patch_.smoothing[j]));
+          if (!patch_.wall[j])
+            sum += volume(j) * Kernel::w(distance(i, j), 2 / (patch_.smoothing[i] + patch_.smoothing[j]));
+        }
+        missing_[i] = missing_layers(sum / constants.lattice.shepard, constants.lattice);
+      });
+      parallel_for(n, [&](Index i) {
+        const double vi = volume(i), li = lambda_[i], hi = patch_.smoothing[i];
+        Index out = pairs_.begin(i);
+        const Index last = patch_.liquid[i] ? out : pairs_.end(i);  // melt belongs to the state
+        for (Index q = out; q < last; ++q) {
+          const Index j = pairs_.neighbour(q);
+          if (patch_.wall[j] || patch_.liquid[j] || (at_rest_[i] && at_rest_[j])) continue;
+          const double f = Kernel::f(distance(i, j), 2 / (hi + patch_.smoothing[j]));
           if (f == 0) continue;
           neighbour_[out] = j;
           // Rounded alike for (i, j) and (j, i), so that heat stays exact.
-          k_[out++] = static_cast<float>(
-              conduction_coefficient(vi, patch_.mass[j] / constants.density, li, lambda_[j], scale * f));
+          k_[out++] = static_cast<float>(conduction_coefficient(vi, volume(j), li, lambda_[j], scale * f) *
+                                         along_surface(missing_[i], missing_[j], constants.lattice));
         }
         row_end_[i] = out;
       });

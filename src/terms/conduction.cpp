@@ -15,22 +15,27 @@ void ConductionOperator::assemble(const Stage& s) {
   parallel_for(n, [&](Index i) {
     conductivity_[i] = s.heat[i] ? s.constants->material.conductivity(s.patch->h[i]) : 0.0;
   });
+  find_missing_layers(s);
   const double scale = 1 / s.constants->lattice.second_moment;
   const double half = 0.5 * s.constants->spacing;
   const double layer = s.area_of_spacing();
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     const double* const volume = s.volume.data();
-    const double* const lambda = conductivity_.data();
+    const double *const lambda = conductivity_.data(), *const missing = missing_.data();
+    const sph::LatticeSums& lattice = s.constants->lattice;
     parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t row) {
       const Index i = s.heated[row];
-      const double vi = 4 * scale * volume[i], li = lambda[i];
+      const double vi = 4 * scale * volume[i], li = lambda[i], mi = missing[i];
       double* const k = k_.data();
       // A partner outside the state has conductivity 0 here, so that the pair exchanges nothing.
       pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
         const double lj = lambda[p.j];
         k[p.k] = vi * volume[p.j] * li * lj / (li + lj) * p.f;
       });
+      if (mi > 0)
+        for (Index q = pairs.begin(i); q < pairs.end(i); ++q)
+          k[q] *= along_surface(mi, missing[pairs.neighbour(q)], lattice);
       double slope = 0, power = 0;
       if (s.constants->any_isothermal && pairs.next_to_wall()[i])
         pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
@@ -50,6 +55,32 @@ void ConductionOperator::assemble(const Stage& s) {
           power += face.flux * layer;
       wall_slope_[i] = slope;
       wall_power_[i] = power;
+    });
+  });
+}
+
+/// Of heated particles. Dummies count as partners only where heat passes to them: any other face ends the
+/// material like a free surface.
+void ConductionOperator::find_missing_layers(const Stage& s) {
+  missing_.assign(s.size(), 0.0);
+  sph::with_dim(s.constants->dim, [&](auto d) {
+    constexpr int D = d;
+    with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+      using Kernel = decltype(kernel);
+      const double* const volume = s.volume.data();
+      const auto& pairs = *s.pairs;
+      parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t row) {
+        const Index i = s.heated[row];
+        double sum = volume[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+        sum += pairs.template sum_row<D, 1>(
+            i, [&](const sph::Pair<D>& p) { return std::array<double, 1>{volume[p.j] * p.w}; })[0];
+        if (pairs.next_to_wall()[i])
+          pairs.template for_row<D>(i, [&](const sph::Pair<D>& p) {
+            if (s.patch->wall[p.j] && !s.constants->faces[s.patch->wall[p.j] - 1].isothermal)
+              sum -= volume[p.j] * p.w;
+          });
+        missing_[i] = missing_layers(sum / s.constants->lattice.shepard, s.constants->lattice);
+      });
     });
   });
 }

@@ -107,11 +107,23 @@ class Tracer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Hits in a cube of edge `edge`: hits[first] ... hits[last - 1].
+struct HitGroup {
+  Vec3 centre;
+  double edge;
+  std::size_t first, last;
+};
+
+/// Sorts hits by the cubes of edge `edge` [m] they lie in (of one cube in their former order) and says where
+/// each cube begins: thousands of hits lie side by side and share what is around them. Hits at no finite
+/// place are dropped; their power [W] is returned in `lost`.
+std::vector<HitGroup> group_hits(std::vector<Hit>& hits, double edge, double& lost);
+
 /// Spreads each hit over the surface particles within `radius` of it, weighted by
 /// (1 - r/radius)^2 and by `weight` (0 = not on the surface); a hit without any goes to the nearest particle
-/// of positive weight, or, if there is none in the cloud, is returned as undeposited. Adds to `power` [W] per
-/// cloud entry. Returns the undeposited power [W].
-double deposit(std::span<const Hit> hits, const PointCloud& cloud, const double* weight, double radius,
-               double* power);
+/// of positive weight, or, if there is none in the cloud, is returned as undeposited. `groups` are those of
+/// group_hits(). Adds to `power` [W] per cloud entry. Returns the undeposited power [W].
+double deposit(std::span<const Hit> hits, std::span<const HitGroup> groups, const PointCloud& cloud,
+               const double* weight, double radius, double* power);
 
 }  // namespace meltray::laser

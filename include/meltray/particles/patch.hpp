@@ -60,8 +60,8 @@ class PatchSelector {
   /// write_back().
   void follow(const Particles& particles, const Patch& patch);
 
-  /// Resting particles in the cells of `centres` and the cells next to them.
-  void select_resting_near(const Particles& particles, std::span<const Index> centres, Patch& patch);
+  /// Particles in the cells of `centres` and the cells next to them.
+  void select_around(const Particles& particles, std::span<const Index> centres, Patch& patch);
   /// Resting and moving particles inside a box, by index.
   void gather(const Particles& particles, const Vec3& min, const Vec3& max, std::vector<Index>& out) const;
 
@@ -79,7 +79,7 @@ class PatchSelector {
   }
 
  private:
-  void fill(const Particles& particles, Patch& patch, bool with_moving = true);
+  void fill(const Particles& particles, Patch& patch);
   void sort_moving(const Particles& particles);
   bool near_melt(const Patch& patch, Index k, Index cell, double distance) const;
 

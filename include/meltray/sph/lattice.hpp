@@ -15,6 +15,8 @@ struct LatticeSums {
   double face_gradient = 1;  ///< 2 |sum V F x| dx of the outermost layer of a flat face
   double face_fill = 1;      ///< Shepard sum of that layer over `shepard`
   double face_diagonal = 1;  ///< its Laplacian sum over `laplacian`
+  double face_moment = 1;    ///< its second moment along the face over `second_moment`
+  double layer_moment = 1;   ///< the part of that which comes from partners of the same layer
 };
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing);

@@ -31,7 +31,7 @@ class BulkConduction {
   /// Row i holds the entries from pairs_.begin(i) to row_end_[i].
   std::vector<Index> awake_, neighbour_, row_end_;
   std::vector<float> k_;
-  std::vector<double> lambda_, temperature_, gain_;
+  std::vector<double> lambda_, missing_, temperature_, gain_;
   std::vector<std::uint8_t> row_wanted_, at_rest_, skip_;
   double rate_ = 0;
 };

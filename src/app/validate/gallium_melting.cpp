@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kStefan = 0.041;
 /// From here on the melt circulates fast enough for the front to lean.
+constexpr double kWallHot =
+    0.01;  ///< the wall of the experiment took until then; the twin is judged from then on
 constexpr double kOrdered = 0.013;
 
 /// Molten length of the rows within a spacing of a height, in parts too.
@@ -97,7 +99,7 @@ Rows gallium_melting(const Setting& setting) {
         if (table.text(r, "what") != curve.column || tau > end) continue;
         rows.push_back(relative_row(fmt::format("tau {}: {}", tau, curve.name), at(record, curve.what, tau),
                                     table.number(r, "value"), curve.line, how));
-        rows.back().judged = judged && curve.line > 0;
+        rows.back().judged = judged && curve.line > 0 && (tau > kWallHot || !setting.small);
       }
     double worst = 0;  // how far the bottom is ahead of the middle or the middle of the top
     for (const Sample& s : record)

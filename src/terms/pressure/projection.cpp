@@ -68,10 +68,10 @@ void Projection::assemble(const Stage& s) {
   // the mean of the source would else leave through one weak row. Without that, the component is a closed
   // pocket.
   anchor_.resize(rows);
-  for (Index r = 0; r < rows; ++r) {
+  parallel_for(rows, [&](Index r) {
     const double fair = kAnchor * (1 - lattice.face_diagonal) * full * s.volume[particle_of_[r]];
     anchor_[r] = ghost_[r] >= fair ? 1.0 : 0.0;
-  }
+  });
   floating_ = solve::floating_components(matrix_, anchor_, group_, scratch_);
   for (Index r = 0; r < rows; ++r)
     if (group_[r] > 0) {

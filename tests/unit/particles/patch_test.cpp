@@ -105,24 +105,19 @@ TEST_CASE("melting and solidifying keep the selection that a fresh selector woul
   CHECK(kept.cell_start == fresh.cell_start);
 }
 
-TEST_CASE("resting particles near centres: no liquid, complete within a cell width") {
+TEST_CASE("particles around centres are complete within a cell width") {
   Block b;
   b.melt(Vec3(0.5, 0.5, 0.9), 0.3);
   PatchSelector selector(b.grid, b.p);
   const std::vector<Index> centres{3 * 400 + 21, 3 * 400 + 390};
   Patch patch;
-  selector.select_resting_near(b.p, centres, patch);
+  selector.select_around(b.p, centres, patch);
   const auto in = members(patch);
-  std::size_t missing = 0, liquid = 0;
-  for (Index i = 0; i < static_cast<Index>(b.p.size()); ++i) {
-    if (b.p.is_liquid(i)) {
-      liquid += in.contains(i);
-      continue;
-    }
+  std::size_t missing = 0;
+  for (Index i = 0; i < static_cast<Index>(b.p.size()); ++i)
     for (Index c : centres) missing += (b.at(i) - b.at(c)).cwiseAbs().maxCoeff() < kWidth && !in.contains(i);
-  }
   CHECK(missing == 0);
-  CHECK(liquid == 0);
+  CHECK(in.size() < b.p.size());
 }
 
 TEST_CASE("gather and for_resting_near find what a search by hand finds") {
@@ -147,7 +142,7 @@ TEST_CASE("gather and for_resting_near find what a search by hand finds") {
   CHECK(near == by_hand);
 }
 
-TEST_CASE("write_back moves liquid only; enthalpy and pressure of all") {
+TEST_CASE("write_back moves liquid only, enthalpy and pressure of all") {
   Block b;
   b.melt(Vec3(0.5, 0.5, 1), 0.2);
   PatchSelector selector(b.grid, b.p);
@@ -170,12 +165,12 @@ TEST_CASE("write_back moves liquid only; enthalpy and pressure of all") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("solid near the melt is elastic; what leaves that zone comes to rest") {
+TEST_CASE("solid near the melt is elastic, and what leaves that zone comes to rest") {
   Block b;
   b.melt(Vec3(0.5, 0.5, 1), 0.1);
   PatchSelector selector(b.grid, b.p);
   Patch patch;
-  constexpr double kDepth = 0.3;  // more than a cell
+  constexpr double kDepth = 0.31;  // more than a cell, and no distance of the lattice
   selector.select_near_melt(b.p, {}, patch, 1 + selector.cells_across(kDepth));
   selector.mark_elastic(b.p, patch, kDepth);
   std::vector<Index> melt;

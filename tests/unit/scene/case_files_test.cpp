@@ -67,7 +67,7 @@ TEST_CASE("case file: the including file overrides its base, --set overrides bot
   CHECK(meltray::scene::case_title(file) == "mine");
 }
 
-TEST_CASE("case file: of several bases the later one wins; bodies replace those of the base") {
+TEST_CASE("case file: of several bases the later one wins, bodies replace those of the base") {
   const Folder folder;
   folder.write("a.toml", weld);
   folder.write("b.toml", "[laser]\nrays = 77\n[time]\nend_s = 5e-4\n");

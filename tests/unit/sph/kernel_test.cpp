@@ -75,6 +75,9 @@ TEST_CASE("lattice sums: values by hand for a support of the nearest neighbours 
   CHECK(two.laplacian == Approx(-dx * dx * 4 * K2::f(dx, inv_h)));
   CHECK(two.second_moment == Approx(-dx * dx * 2 * K2::f(dx, inv_h) * dx * dx));
   CHECK(two.face_gradient == Approx(-2 * dx * dx * K2::f(dx, inv_h) * dx * dx));
+  // The outermost row has three of the four neighbours; along the face all of the second moment is its own.
+  CHECK(two.face_moment == Approx(1));
+  CHECK(two.layer_moment == Approx(1));
   using K3 = CubicSpline<3>;
   const auto three = lattice_sums(KernelType::cubic_spline, 3, dx, h);
   CHECK(three.shepard == Approx(dx * dx * dx * (K3::w(0, inv_h) + 6 * K3::w(dx, inv_h))));

@@ -248,3 +248,31 @@ TEST_CASE("conduction: the implicit solve is that of the dense matrix, walls and
   CHECK(fastest <= 2 * op.rate(s.stage) * (1 + 1e-6));
   CHECK(fastest >= op.rate(s.stage) * (1 - 1e-6));
 }
+
+TEST_CASE("conduction: a mode along a free surface decays there as fast as inside") {
+  for (int dim : {2, 3}) {
+    StageSetup s(dim, kDx);
+    const Vec3 max(24 * kDx, dim == 3 ? 9 * kDx : 12 * kDx, 12 * kDx);
+    const int normal = dim - 1;
+    const double k = 2 * M_PI / max[0], exact = kLambda / kCapacity * k * k;
+    s.fill(Vec3::Zero(), max, 1000, false);
+    Vec3 room = Vec3::Zero();
+    room[normal] = 3 * kDx;
+    s.prepare(-room, max + room, {true, dim == 3, false});
+    s.set_temperature([&](const Vec3& x) { return 1000 + 100 * std::sin(k * x[0]); });
+    ConductionOperator op;
+    op.assemble(s.stage);
+    const auto rate = heating(s, op);
+    std::array<double, 12> sum{}, norm{};
+    for (Index i = 0; i < s.patch.size(); ++i) {
+      const auto layer = static_cast<std::size_t>(s.patch.x[normal][i] / kDx);
+      const double t = s.stage.temperature[i] - 1000;
+      sum[layer] -= t * rate[i] / 700;
+      norm[layer] += t * t;
+    }
+    for (const std::size_t layer : {0, 1, 2, 6, 11}) {
+      CAPTURE(dim, layer, sum[layer] / norm[layer] / exact);
+      CHECK(sum[layer] / norm[layer] == Approx(exact).epsilon(layer == 6 ? 0.01 : 0.05));
+    }
+  }
+}

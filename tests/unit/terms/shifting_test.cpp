@@ -119,7 +119,7 @@ TEST_CASE("shifting: the velocity carried along is du . grad v") {
   CHECK(std::sqrt(error / size) < 0.06);
 }
 
-TEST_CASE("shifting: surface particles stay; the rest follow C, saturated at a fifth of their speed") {
+TEST_CASE("shifting: surface particles stay, the rest follow C, saturated at a fifth of their speed") {
   StageSetup s(3, kDx);
   const Vec3 max = Vec3::Constant(10 * kDx);
   s.fill(Vec3::Zero(), max, 2000);
