@@ -40,6 +40,8 @@ const std::vector<ValidationCase>& validation_cases() {
        hydrostatic},
       {2, "dam_break_martin_moyce", "collapse of a column: front over time, both solvers",
        dam_break_martin_moyce},
+      {2, "dam_break_lobovsky",
+       "collapse of a column onto a wall: pressure and time of the impact, both solvers", dam_break_lobovsky},
       {3, "absorptance_nist_316l",
        "spot welds of 316L: absorbed share and start of the capillary over intensity", absorptance_nist_316l,
        absorptance_nist_316l_welds},

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/validate/scenes.hpp"
+#include "app/validate/table.hpp"
+
+namespace meltray::app {
+namespace {
+
+constexpr double kSensor = 0.01;  ///< height of the sensor over that of the column
+constexpr double kMean = 0.02;    ///< width of the running mean over sqrt(H / g)
+
+struct Impact {
+  double peak = 0, time = 0;  ///< largest mean pressure over rho g H; when half of it is reached
+  double seconds = 0;
+};
+
+/// Pressure at the sensor after every step, as its integral over time.
+class Sensor {
+ public:
+  void record(double time, double pressure) {
+    integral_.push_back(integral_.empty() ? 0 : integral_.back() + pressure * (time - time_.back()));
+    time_.push_back(time);
+  }
+  /// Largest mean over kMean, and the end of the first window whose mean is half of that.
+  Impact first_impact() const {
+    Impact impact;
+    for (std::size_t k = 0; k < time_.size(); ++k) impact.peak = std::max(impact.peak, mean_until(k));
+    for (std::size_t k = 0; k < time_.size(); ++k)
+      if (mean_until(k) >= 0.5 * impact.peak) {
+        impact.time = time_[k] - 0.5 * kMean;
+        break;
+      }
+    return impact;
+  }
+
+ private:
+  double mean_until(std::size_t k) const {
+    const auto begin = std::lower_bound(time_.begin(), time_.end(), time_[k] - kMean);
+    const auto b = static_cast<std::size_t>(begin - time_.begin());
+    return b < k ? (integral_[k] - integral_[b]) / (time_[k] - time_[b]) : 0.0;
+  }
+  std::vector<double> time_, integral_;
+};
+
+Impact run(const Setting& setting, const scene::Overrides& overrides, double spacing) {
+  const Watch watch;
+  scene::Overrides all = overrides;
+  all.push_back(fmt::format("domain.spacing_m={:.17g}", spacing));
+  const auto simulation = start(setting, all);
+  const scene::Scene& scene = simulation->scene();
+  const Particles& p = simulation->particles();
+  const Vec3 place(scene.domain.max[0], kSensor, 0);
+  const double reach = 3 * spacing;
+  Sensor sensor;
+  advance(*simulation, scene.time.end, [&] {
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (!p.is_liquid(i) || p.has(i, kRemoved)) continue;
+      const double r = std::hypot(p.x[0][i] - place[0], p.x[1][i] - place[1]);
+      const double weight = r < reach ? std::pow(1 - r / reach, 2) : 0.0;
+      sum += weight * p.pressure[i];
+      weights += weight;
+    }
+    sensor.record(simulation->time(), weights > 0 ? sum / weights : 0.0);
+  });
+  Impact impact = sensor.first_impact();
+  impact.seconds = watch.seconds();
+  return impact;
+}
+
+}  // namespace
+
+Rows dam_break_lobovsky(const Setting& setting) {
+  const Table reference(setting.folder / "reference.csv");
+  const double peak = reference.number(0, "value"), time = reference.number(1, "value");
+  struct Model {
+    const char* name;
+    scene::Overrides overrides;
+  };
+  const std::vector<Model> models = {
+      {"wcsph", {}}, {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
+  const std::vector<int> across = setting.small ? std::vector<int>{20} : std::vector<int>{30, 60};
+  Rows rows;
+  for (const Model& m : models)
+    for (const int count : across) {
+      const Impact impact = run(setting, m.overrides, 1.0 / count);
+      const Measured how{fmt::format("H/dx {}", count), impact.seconds, reference.source()};
+      rows.push_back(
+          relative_row(std::string(m.name) + ": peak at sensor 1 / rho g H", impact.peak, peak, 0.3, how));
+      rows.back().goal = 0.15;
+      rows.back().judged = count == across.back() && !setting.small;
+      rows.push_back(relative_row(std::string(m.name) + ": time of the impact / sqrt(H / g)", impact.time,
+                                  time, 0.05, how));
+      rows.back().judged = count == across.back();
+    }
+  return rows;
+}
+
+}  // namespace meltray::app
