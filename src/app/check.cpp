@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/known_limits.hpp"
+#include "app/run_estimate.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
@@ -24,21 +25,6 @@ using scene::Simulation;
 
 /// Speed of melt in a developed weld pool, for limits and estimates before there is one [m/s].
 constexpr double kPoolSpeed = 5;
-/// Liquid particles of a developed pool: its width and length in focal diameters, its depth per power.
-constexpr double kPoolWidth = 2, kPoolLength = 4, kDepthPerPower = 1e-6;  // the last in [m/W]
-/// Core time of one step: per liquid particle, and per step of a scene with a laser whatever its melt
-/// (tracing, selection, lists). Rough figures of a weld on two cores, where the mean step was half the
-/// shortest limit, since spatter and error control shorten it.
-constexpr double kSecondsPerLaserStep = 1.5e-2, kShareOfLimit = 0.5;
-constexpr double kSecondsPerParticleStep = 4e-6;
-
-void heading(const char* text) {
-  fmt::print("\n# {}\n", text);
-}
-void line(const std::string& name, const std::string& value) {
-  fmt::print("  {:<34} {}\n", name, value);
-}
-
 bool is_inside(const scene::Body& b, const Vec3& x, int dim, double slack) {
   double r2 = 0;
   for (int c = 0; c < dim; ++c) {
@@ -243,45 +229,6 @@ void print_laser(const Scene& s) {
                      laser::absorptance(scene::laser_index(s).solid, 1),
                      laser::absorptance(scene::laser_index(s).liquid, 1), scene::name_of(s.laser->optics)));
   line("rays, retrace at latest every [s]", fmt::format("{}, {:g}", t.rays, s.laser->retrace_interval));
-}
-
-/// Liquid particles to expect: those at the start, or a pool of a stated size where a laser melts solid.
-double expected_liquid(const Simulation& simulation) {
-  const Scene& s = simulation.scene();
-  const double now = static_cast<double>(simulation.liquid_count());
-  if (now > 0 || !s.laser || !s.terms.melting) return now;
-  const double spot = s.laser->beam.focal_diameter;
-  const double volume = kPoolWidth * spot * kPoolLength * spot * kDepthPerPower * s.laser->beam.power;
-  std::size_t material = 0;
-  for (std::size_t i = 0; i < simulation.particles().size(); ++i)
-    material += !simulation.particles().is_wall(i);
-  return std::min(volume / std::pow(s.domain.spacing, 3), 0.5 * static_cast<double>(material));
-}
-
-void print_run_time(const Simulation& simulation, double step) {
-  heading("run time (a rough estimate)");
-  const Scene& s = simulation.scene();
-  const double fixed = s.time.integrator.fixed_step;
-  double dt = step > 0 ? std::min(step, s.time.integrator.max_step) : s.time.integrator.max_step;
-  if (s.laser) dt *= kShareOfLimit;
-  if (fixed > 0) dt = fixed;
-  double count = expected_liquid(simulation);
-  if (count == 0) count = static_cast<double>(simulation.active_count());
-  if (!(dt > 0 && dt < s.time.end)) {
-    line("unknown", "no limit sets the step before the run: error control does");
-    return;
-  }
-  const double steps = s.time.end / dt,
-               seconds = steps * (count * kSecondsPerParticleStep + (s.laser ? kSecondsPerLaserStep : 0.0)) /
-                         threads();
-  line("steps", fmt::format("{:.3g} of {:.3g} s", steps, dt));
-  line("particles that cost", fmt::format("{:.3g}", count));
-  line("stated cost of a step",
-       fmt::format("{:g} core-us per particle{}; not measured on this machine", 1e6 * kSecondsPerParticleStep,
-                   s.laser ? fmt::format(" + {:g} core-ms", 1e3 * kSecondsPerLaserStep) : ""));
-  line("estimate", fmt::format("about {:.2g} {} on {} thread{}; good to an order of magnitude",
-                               seconds < 120 ? seconds : seconds / 60, seconds < 120 ? "s" : "min", threads(),
-                               threads() == 1 ? "" : "s"));
 }
 
 void print_limits_passed(const Scene& s) {

@@ -61,7 +61,7 @@ std::vector<Key> flow_keys() {
           .only_if(pressure)
           .only_if(isph),
       number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),
-             "Time in which the projection takes back errors of density; 0: five spacings at the speed that "
+             "Time in which the projection takes back errors of density; 0: seven spacings at the speed that "
              "the scene implies.")
           .only_if(pressure)
           .only_if(isph),

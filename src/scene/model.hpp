@@ -93,8 +93,8 @@ class Model : public OdeProblem {
   double density_on_melting(Index i) const;
   /// Density of solid without pressure at a temperature: that of elastic solid, else the scene's [kg/m^3].
   double density_of_solid(double temperature) const;
-  /// Largest speed of elastic solid in the patch [m/s].
-  double elastic_speed() const;
+  /// Largest speed of some particles of the patch, loose drops among them or not [m/s].
+  double largest_speed(const std::vector<Index>& which, bool with_loose) const;
 
   terms::Stage stage;
   Patch patch;

@@ -85,18 +85,9 @@ void Model::finish_elastic_rates(const double* y, double* rate, bool transport) 
   for (int c = 0; c < symmetric_count(dim); ++c) write(stress_rate_[c]);
 }
 
-double Model::elastic_speed() const {
-  return parallel_max(static_cast<std::ptrdiff_t>(stage.elastic.size()), 0.0, [&](std::ptrdiff_t k) {
-    const Index i = stage.elastic[k];
-    double v2 = 0;
-    for (int c = 0; c < constants_.dim; ++c) v2 += patch.v[c][i] * patch.v[c][i];
-    return std::sqrt(v2);
-  });
-}
-
 double Model::elastic_step() const {
   return scene_.time.cfl_acoustic * constants_.smoothing /
-         (elastic_->acoustic_speed(constants_.density) + elastic_speed());
+         (elastic_->acoustic_speed(constants_.density) + largest_speed(stage.elastic, true));
 }
 
 double Model::density_of_solid(double temperature) const {

@@ -125,22 +125,25 @@ std::string Model::blame(Index i, double dt) {
   return text;
 }
 
+double Model::largest_speed(const std::vector<Index>& which, bool with_loose) const {
+  return parallel_max(static_cast<std::ptrdiff_t>(which.size()), 0.0, [&](std::ptrdiff_t k) {
+    const Index i = which[k];
+    if (stage.loose[i] && !with_loose) return 0.0;
+    double v2 = 0;
+    for (int c = 0; c < constants_.dim; ++c) v2 += patch.v[c][i] * patch.v[c][i];
+    return std::sqrt(v2);
+  });
+}
+
 std::vector<StepLimit> Model::step_limits() {
   std::vector<StepLimit> limits;
   const Time& time = scene_.time;
   const double h = constants_.smoothing, rho = constants_.density;
-  const auto moving = static_cast<std::ptrdiff_t>(stage.moving.size());
   // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
   if (flows() && scene_.flow.projection == Projection::stage)
     limits.push_back({divergence_time, "divergence"});
-  if (flows() && moving > 0) {
-    const double speed = parallel_max(moving, 0.0, [&](std::ptrdiff_t k) {
-      const Index i = stage.moving[k];
-      if (stage.loose[i]) return 0.0;
-      double v2 = 0;
-      for (int c = 0; c < constants_.dim; ++c) v2 += patch.v[c][i] * patch.v[c][i];
-      return std::sqrt(v2);
-    });
+  if (flows() && !stage.moving.empty()) {
+    const double speed = largest_speed(stage.moving, false);
     if (speed > 0) limits.push_back({time.cfl_advective * h / speed, "advective"});
     if (weakly_compressible()) limits.push_back({acoustic_step(speed), "acoustic"});
     if (scene_.terms.surface_tension) {

@@ -167,12 +167,8 @@ StepInfo Simulation::Impl::step(double t_stop) {
 /// How far particles may have moved since the lists were built and the light was traced.
 void Simulation::Impl::note_motion(double dt) {
   if (!model.flows() || (model.stage.moving.empty() && model.stage.elastic.empty())) return;
-  const auto moving = static_cast<std::ptrdiff_t>(model.stage.moving.size());
-  const double fastest = parallel_max(moving, model.elastic_speed(), [&](std::ptrdiff_t k) {
-    double v2 = 0;
-    for (int c = 0; c < constants.dim; ++c) v2 += std::pow(model.patch.v[c][model.stage.moving[k]], 2);
-    return std::sqrt(v2);
-  });
+  const double fastest =
+      std::max(model.largest_speed(model.stage.moving, true), model.largest_speed(model.stage.elastic, true));
   list_motion += dt * fastest;
   if (laser) laser->add_motion(dt * fastest);
 }
