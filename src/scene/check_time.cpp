@@ -62,7 +62,8 @@ void check_multirate(const Scene& scene, const Document& document) {
   if (scene.time.conduction == PartitionChoice::explicit_)
     refuse(document.place("splitting.conduction"), "splitting.conduction", "\"explicit\"" + with,
            "\"auto\": it is the slow term");
-  if (scene.terms.pressure && scene.flow.projection == Projection::step)
+  const bool projects = scene.terms.pressure && scene.flow.solver == FlowSolver::isph;
+  if (projects && scene.flow.projection == Projection::step)
     refuse(document.place("splitting.projection"), "splitting.projection", "\"step\"" + with, "\"stage\"");
 }
 

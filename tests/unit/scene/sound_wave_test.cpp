@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "meltray/scene/case_file.hpp"
 #include "meltray/scene/simulation.hpp"
@@ -114,4 +116,41 @@ TEST_CASE("explicit orders 2 to 4 of the weakly compressible flow are observed")
   };
   const double observed = std::log2(error(2e-3) / error(1e-3));
   CHECK(observed > order - 0.3);
+}
+
+TEST_CASE("multirate: fast sound beside slow conduction gives what one step for both gives") {
+  // A hot stripe across the wave: its temperature spreads while sound passes ten times.
+  const auto after = [&](const std::vector<std::string>& how) {
+    std::vector<std::string> keys = {"terms.conduction=true", "material.conductivity_solid_w_m_k=0.05",
+                                     "material.conductivity_liquid_w_m_k=0.05",
+                                     "material.latent_heat_fusion_j_kg=0.0"};
+    keys.insert(keys.end(), how.begin(), how.end());
+    scene::Simulation s(scene::read_case_text(kStrip, "strip", keys));
+    begin(s);
+    Particles& p = s.particles();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      p.temperature[i] = 400 + 10 * std::cos(kWave * p.x[0][i]);
+      p.h[i] = s.scene().material.enthalpy(p.temperature[i]);
+    }
+    while (s.time() < 0.1) s.step(0.1);
+    std::vector<double> fields(p.density.begin(), p.density.end());
+    for (double& f : fields) f = (f - 1) * 1e4;
+    for (const double t : p.temperature) fields.push_back((t - 400) / 10);
+    return fields;
+  };
+  const auto once = after({"time.order=3", "time.fixed_step_s=2.5e-4"});
+  const auto split =
+      after({"time.method=multirate", "time.order=3", "time.fixed_step_s=2e-3", "time.fast_step_s=2.5e-4"});
+  const auto coarse =
+      after({"time.method=multirate", "time.order=3", "time.fixed_step_s=4e-3", "time.fast_step_s=5e-4"});
+  const auto largest = [&](const std::vector<double>& a) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - once[i]));
+    return most;
+  };
+  CHECK(largest(split) < 1e-3);
+  CHECK(largest(split) < 0.3 * largest(coarse));
+  double spread = 0;
+  for (std::size_t i = once.size() / 2; i < once.size(); ++i) spread = std::max(spread, once[i]);
+  CHECK(spread < 0.9);  // conduction took part
 }
