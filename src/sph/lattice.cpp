@@ -8,7 +8,7 @@
 namespace meltray::sph {
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing) {
-  LatticeSums sums{0, 0, 0, 0, 0, 0, 0, 0};
+  LatticeSums sums{0, 0, 0, 0, 0, 0, 0, 0, 0};
   const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
   const double volume = std::pow(spacing, dim), inv_h = 1 / smoothing;
   double face = 0;
@@ -23,6 +23,7 @@ LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoo
             sums.shepard += w;
             if (a <= 0) sums.face_fill += w;
             if (r == 0) continue;
+            sums.neighbours += w > 0;
             const double f = volume * Kernel::f(r, inv_h);
             sums.laplacian -= f;
             sums.second_moment -= f * x * x;

@@ -59,6 +59,7 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
       parallel_for(n, [&](Index i) {
         missing_[i] = 0;
         if (patch_.wall[i] || patch_.liquid[i] || at_rest_[i]) return;
+        if (surrounded(pairs_, i, constants.lattice)) return;
         double sum = volume(i) * Kernel::w(0.0, 1 / patch_.smoothing[i]);
         for (Index q = pairs_.begin(i); q < pairs_.end(i); ++q) {
           const Index j = pairs_.neighbour(q);

@@ -71,6 +71,7 @@ void ConductionOperator::find_missing_layers(const Stage& s) {
       const auto& pairs = *s.pairs;
       parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t row) {
         const Index i = s.heated[row];
+        if (surrounded(pairs, i, s.constants->lattice)) return;
         double sum = volume[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
         sum += pairs.template sum_row<D, 1>(
             i, [&](const sph::Pair<D>& p) { return std::array<double, 1>{volume[p.j] * p.w}; })[0];

@@ -17,6 +17,7 @@ struct LatticeSums {
   double face_diagonal = 1;  ///< its Laplacian sum over `laplacian`
   double face_moment = 1;    ///< its second moment along the face over `second_moment`
   double layer_moment = 1;   ///< the part of that which comes from partners of the same layer
+  int neighbours = 0;        ///< within the support, the particle itself not counted
 };
 
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing);

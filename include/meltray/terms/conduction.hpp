@@ -39,6 +39,12 @@ class ConductionOperator {
   mutable solve::CgVectors<1> vectors_;
 };
 
+/// True where a particle has so many neighbours, none of them a dummy, that it lacks nothing: most do, and
+/// their Shepard sum need not be asked for. One of a flat face has little more than half of a full lattice's.
+inline bool surrounded(const sph::PairList& pairs, Index i, const sph::LatticeSums& lattice) {
+  return pairs.end(i) - pairs.begin(i) >= 0.9 * lattice.neighbours && !pairs.next_to_wall()[i];
+}
+
 /// What a particle lacks for conduction along the surface, over what one of a flat face lacks: 0 inside, 1 on
 /// a flat face, more in films, which conduct as in dense metal too. `shepard`: over that of a full lattice.
 inline double missing_layers(double shepard, const sph::LatticeSums& lattice) {

@@ -76,6 +76,7 @@ TEST_CASE("lattice sums: values by hand for a support of the nearest neighbours 
   CHECK(two.second_moment == Approx(-dx * dx * 2 * K2::f(dx, inv_h) * dx * dx));
   CHECK(two.face_gradient == Approx(-2 * dx * dx * K2::f(dx, inv_h) * dx * dx));
   // The outermost row has three of the four neighbours; along the face all of the second moment is its own.
+  CHECK(two.neighbours == 4);
   CHECK(two.face_moment == Approx(1));
   CHECK(two.layer_moment == Approx(1));
   using K3 = CubicSpline<3>;
