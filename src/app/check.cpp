@@ -87,6 +87,12 @@ struct Limit {
   double seconds;
 };
 
+/// Limit of elastic solid at rest [s].
+double elastic_step(const Scene& s) {
+  return s.time.cfl_acoustic * s.domain.smoothing_ratio * s.domain.spacing /
+         scene::elastic_solid(s).acoustic_speed(s.material.density);
+}
+
 /// Limits of a pool that is not there yet; explicit terms as if they were explicit, with coefficients at h:
 /// Morris et al. 1997, 0.25 sqrt(rho h^3/(2 pi sigma)) and 0.125 h^2/nu, with the case's own Courant numbers.
 std::vector<Limit> developed_limits(const Scene& s) {
@@ -100,10 +106,7 @@ std::vector<Limit> developed_limits(const Scene& s) {
     out.push_back(
         {"acoustic", s.time.cfl_acoustic * h / (s.flow.sound_speed * (1 + 0.6 * alpha) + kPoolSpeed)});
   }
-  if (scene::is_elastic(s)) {
-    const terms::ElasticSolid solid = scene::elastic_solid(s);
-    out.push_back({"elastic", s.time.cfl_acoustic * h / solid.acoustic_speed(m.density)});
-  }
+  if (scene::is_elastic(s)) out.push_back({"elastic", elastic_step(s)});
   if (s.terms.pressure) out.push_back({"advective", s.time.cfl_advective * h / kPoolSpeed});
   if (s.terms.surface_tension)
     out.push_back({"capillary", s.time.cfl_capillary * std::sqrt(m.density * h * h * h /
@@ -189,9 +192,7 @@ void print_elastic(const Scene& s) {
   if (!scene::is_elastic(s)) return;
   heading("elastic solid");
   const terms::ElasticSolid solid = scene::elastic_solid(s);
-  const double rho = s.material.density, scale = s.flow.elastic_modulus_scale,
-               step = s.time.cfl_acoustic * s.domain.smoothing_ratio * s.domain.spacing /
-                      solid.acoustic_speed(rho);
+  const double rho = s.material.density, scale = s.flow.elastic_modulus_scale, step = elastic_step(s);
   line("K, G [Pa]", fmt::format("{:.4g}, {:.4g}", solid.bulk_modulus, solid.shear_modulus));
   line("longitudinal sound [m/s]", fmt::format("{:.4g}", solid.sound_speed(rho)));
   line("elastic step [s]", fmt::format("{:.3g}", step));

@@ -77,24 +77,17 @@ Impact run(const Setting& setting, const scene::Overrides& overrides, double spa
 Rows dam_break_lobovsky(const Setting& setting) {
   const Table reference(setting.folder / "reference.csv");
   const double peak = reference.number(0, "value"), time = reference.number(1, "value");
-  struct Model {
-    const char* name;
-    scene::Overrides overrides;
-  };
-  const std::vector<Model> models = {
-      {"wcsph", {}}, {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
   const std::vector<int> across = setting.small ? std::vector<int>{20} : std::vector<int>{30, 60};
   Rows rows;
-  for (const Model& m : models)
+  for (const Model& m : collapse_models())
     for (const int count : across) {
       const Impact impact = run(setting, m.overrides, 1.0 / count);
       const Measured how{fmt::format("H/dx {}", count), impact.seconds, reference.source()};
-      rows.push_back(
-          relative_row(std::string(m.name) + ": peak at sensor 1 / rho g H", impact.peak, peak, 0.3, how));
+      rows.push_back(relative_row(m.name + ": peak at sensor 1 / rho g H", impact.peak, peak, 0.3, how));
       rows.back().goal = 0.15;
       rows.back().judged = count == across.back() && !setting.small;
-      rows.push_back(relative_row(std::string(m.name) + ": time of the impact / sqrt(H / g)", impact.time,
-                                  time, 0.05, how));
+      rows.push_back(
+          relative_row(m.name + ": time of the impact / sqrt(H / g)", impact.time, time, 0.05, how));
       rows.back().judged = count == across.back();
     }
   return rows;

@@ -71,16 +71,10 @@ double measured_speed(const Table& reference, double from, double until) {
 
 Rows dam_break_martin_moyce(const Setting& setting) {
   const Table reference(setting.folder / "reference.csv");
-  struct Model {
-    const char* name;
-    scene::Overrides overrides;
-  };
-  const std::vector<Model> models = {
-      {"wcsph", {}}, {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
   const double spacing = setting.small ? 0.05 : 0.025;
   const double end = setting.small ? 1.7 : 3.4;  // of the points that count, in t*
   Rows rows;
-  for (const Model& m : models) {
+  for (const Model& m : collapse_models()) {
     scene::Overrides overrides = m.overrides;
     overrides.push_back(fmt::format("time.end_s={}", end / std::sqrt(2.0) + 0.05));
     const Trace trace = run(setting, overrides, spacing);
@@ -99,10 +93,10 @@ Rows dam_break_martin_moyce(const Setting& setting) {
       sum += std::abs(front / measured - 1);
       ++points;
     }
-    rows.push_back(limit_row(std::string(m.name) + ": mean deviation of x*", sum / points, 0.05, how));
+    rows.push_back(limit_row(m.name + ": mean deviation of x*", sum / points, 0.05, how));
     rows.back().judged = !setting.small;
     const double from = 1.2, until = setting.small ? 1.65 : 3.0;
-    rows.push_back(relative_row(std::string(m.name) + ": mean speed of the front",
+    rows.push_back(relative_row(m.name + ": mean speed of the front",
                                 (at(trace, until) - at(trace, from)) / (until - from),
                                 measured_speed(reference, from, until), setting.small ? 0.15 : 0.05, how));
   }

@@ -10,9 +10,9 @@ namespace meltray::app {
 namespace {
 
 constexpr double kStefan = 0.041;
+/// Until then the wall of the experiment was becoming hot: the small twin is judged from here on.
+constexpr double kWallHot = 0.01;
 /// From here on the melt circulates fast enough for the front to lean.
-constexpr double kWallHot =
-    0.01;  ///< the wall of the experiment took until then; the twin is judged from then on
 constexpr double kOrdered = 0.013;
 
 /// Molten length of the rows within a spacing of a height, in parts too.

@@ -84,13 +84,13 @@ Tank run(const Setting& setting, const scene::Overrides& overrides, double spaci
 }  // namespace
 
 Rows hydrostatic(const Setting& setting) {
-  struct Model {
+  struct Variant {
     const char* name;
     scene::Overrides overrides;
     bool judged;
   };
   // The plain diffusion is known to disturb the pressure of a tank at rest: it is there for comparison.
-  const std::vector<Model> models = {
+  const std::vector<Variant> models = {
       {"wcsph, antuono", {}, true},
       {"wcsph, molteni_colagrossi", {"flow.density_diffusion=molteni_colagrossi"}, false},
       {"isph",
@@ -100,7 +100,7 @@ Rows hydrostatic(const Setting& setting) {
   const std::vector<double> spacings =
       setting.small ? std::vector<double>{0.02} : std::vector<double>{0.04, 0.02};
   Rows rows;
-  for (const Model& m : models) {
+  for (const Variant& m : models) {
     if (setting.small && !m.judged) continue;
     std::optional<Tank> coarse;
     for (const double spacing : spacings) {

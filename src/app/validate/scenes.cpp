@@ -11,6 +11,11 @@ std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Ov
   return std::make_unique<scene::Simulation>(scene::read_case(setting.folder / "case.toml", overrides));
 }
 
+std::vector<Model> collapse_models() {
+  return {{"wcsph", {}},
+          {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
+}
+
 void advance(scene::Simulation& simulation, double end, const std::function<void()>& watch) {
   while (simulation.time() < end) {
     simulation.step(end);

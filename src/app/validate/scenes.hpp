@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/validate/cases.hpp"
 #include "meltray/scene/case_file.hpp"
@@ -12,6 +14,14 @@ namespace meltray::app {
 
 /// The scene of validation/<id>/case.toml with some keys changed.
 std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides = {});
+
+/// A way to run a scene, and what its rows are called by.
+struct Model {
+  std::string name;
+  scene::Overrides overrides;
+};
+/// Both solvers for collapsing columns, whose case files are WCSPH.
+std::vector<Model> collapse_models();
 
 /// Steps until `end` [s]; `watch` is called after every step.
 void advance(scene::Simulation& simulation, double end, const std::function<void()>& watch = {});

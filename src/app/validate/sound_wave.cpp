@@ -72,10 +72,6 @@ Wave run(const Setting& setting, const scene::Overrides& overrides, double spaci
 }  // namespace
 
 Rows sound_wave(const Setting& setting) {
-  struct Model {
-    const char* name;
-    scene::Overrides overrides;
-  };
   const std::vector<Model> models = {{"no diffusion", {}},
                                      {"antuono", {"flow.density_diffusion=antuono"}},
                                      {"molteni_colagrossi", {"flow.density_diffusion=molteni_colagrossi"}}};
@@ -83,7 +79,7 @@ Rows sound_wave(const Setting& setting) {
       setting.small ? std::vector<double>{0.04} : std::vector<double>{0.04, 0.02, 0.01};
   Rows rows;
   for (const Model& m : models) {
-    const std::string name = std::string(m.name) + ": ";
+    const std::string name = m.name + ": ";
     Rows periods, amplitudes;
     for (const double spacing : spacings) {
       const Wave wave = run(setting, m.overrides, spacing);
