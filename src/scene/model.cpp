@@ -63,11 +63,24 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   divergence_time = kDivergenceCrossings * crossing;
   partitions = initial_partitions(scene.time);
-  if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) weak_.emplace(scene);
+  if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) acoustic_ = acoustic_pass(scene);
   if (is_elastic(scene)) elastic_ = elastic_solid(scene);
   stage.constants = &constants_;
   stage.patch = &patch;
   stage.pairs = &pairs;
+}
+
+void Model::take_up(const Partitions& before) {
+  partitions = initial_partitions(scene_.time);
+  if (!has_two_sides(scene_.time.integrator.method)) return;
+  const auto keep = [](PartitionChoice choice, bool was, bool& part) {
+    if (choice == PartitionChoice::automatic) part = was;
+  };
+  const Time& time = scene_.time;
+  keep(time.conduction, before.conduction, partitions.conduction);
+  keep(time.viscosity, before.viscosity, partitions.viscosity);
+  keep(time.interface_viscosity, before.interface_viscosity, partitions.interface_viscosity);
+  keep(time.evaporation, before.losses, partitions.losses);
 }
 
 bool Model::needs_surface() const {
@@ -166,7 +179,7 @@ void Model::evaluate_patch(double t) {
     pairs.refresh(patch, constants_.kernel);
   }
   parallel_for(stage.size(), [&](Index i) { update_temperature(i); });
-  if (weakly_compressible()) weak_->state.update(stage);
+  if (weakly_compressible()) acoustic_->state.update(stage);
   if (has_elastic_solid()) elastic_->update(stage);
   update_surface();
 }
@@ -184,10 +197,10 @@ void Model::update_surface() {
   }
   if (weakly_compressible()) {
     const auto timer = timers_.measure(Part::pressure);
-    weak_->state.extrapolate(stage);
+    acoustic_->gather(stage);
     update_surface_pressure();
   }
-  implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = false;
+  implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = marangoni_valid_ = false;
 }
 
 void Model::evaluate(double t, const double* y) {
@@ -207,17 +220,16 @@ void Model::evaluate(double t, const double* y) {
 
   // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
   // coefficients that rest on them are those of the start of the step. A weakly compressible step is so short
-  // that only the pairs of moving particles and pressures are renewed in its stages.
+  // that only what travels with sound is renewed in its stages.
   if (weakly_compressible()) {
-    if (!still) {
+    if (!still && has_elastic_solid()) {
       const auto timer = timers_.measure(Part::neighbours);
-      pairs.refresh(patch, constants_.kernel, stage.moving);
-      if (has_elastic_solid()) pairs.refresh(patch, constants_.kernel, stage.elastic);
+      pairs.refresh(patch, constants_.kernel, stage.elastic);
     }
-    weak_->state.update(stage);
+    acoustic_->state.update(stage);
     if (has_elastic_solid()) elastic_->update(stage);
     const auto timer = timers_.measure(Part::pressure);
-    weak_->state.extrapolate(stage);
+    acoustic_->gather(stage);
   } else if (!projects_steps()) {
     if (!still) {
       const auto timer = timers_.measure(Part::neighbours);
@@ -324,7 +336,10 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
     crossings.gravity = force_gained();
   }
   if (!scene_.terms.marangoni) return;
-  marangoni_.add_acceleration(stage, rates.acceleration);
+  if (weakly_compressible())
+    add_frozen_marangoni(rates.acceleration);
+  else
+    marangoni_.add_acceleration(stage, rates.acceleration);
   crossings.surface = force_gained();
 }
 

@@ -10,11 +10,10 @@
 #include "meltray/scene/elastic.hpp"
 #include "meltray/scene/scene.hpp"
 #include "meltray/scene/simulation.hpp"
-#include "meltray/terms/artificial_viscosity.hpp"
 #include "meltray/terms/conduction.hpp"
 #include "meltray/terms/evaporation.hpp"
+#include "meltray/terms/pressure/acoustic_pass.hpp"
 #include "meltray/terms/pressure/projection.hpp"
-#include "meltray/terms/pressure/weakly_compressible.hpp"
 #include "meltray/terms/shifting.hpp"
 #include "meltray/terms/stage.hpp"
 #include "meltray/terms/surface_forces.hpp"
@@ -35,15 +34,8 @@ inline bool has_two_sides(Method m) {
   return m == Method::imex || m == Method::euler;
 }
 
-/// Terms of the weakly compressible flow, set up from a scene; coefficients are 0 where a term is off.
-struct WeaklyCompressible {
-  explicit WeaklyCompressible(const Scene& scene);
-  terms::EquationOfState state;
-  terms::Continuity continuity;
-  terms::DensityDiffusion diffusion;
-  terms::PressureForce force;
-  terms::ArtificialViscosity artificial;
-};
+/// The terms of a weakly compressible scene.
+terms::AcousticPass acoustic_pass(const Scene& scene);
 
 /// The active terms of a scene as an ODE on the patch: y = [x | v | rho | h | x v rho S | crossings] of the
 /// particles that move, those that exchange heat, and elastic solid, rho only in weakly compressible scenes;
@@ -52,6 +44,9 @@ class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
 
+  /// The pairs of a patch whose list has been built anew, with the same skin [m], and whose stage is
+  /// prepared.
+  void find_pairs(double skin);
   /// Geometry, temperatures and surface of the patch as it is. The stage must have been prepared for it.
   void evaluate_patch(double t);
   /// Copies the evaluated patch into y and describes its fields.
@@ -69,6 +64,8 @@ class Model : public OdeProblem {
   /// method has two sides; multirate methods have conduction on the slow side, which takes the place of the
   /// implicit one.
   void choose_partitions(double dt);
+  /// Partitions of a run that goes on: those of before for what is "auto", in a method that has the choice.
+  void take_up(const Partitions& before);
 
   bool has_explicit() const override;
   bool has_implicit() const override;
@@ -83,7 +80,7 @@ class Model : public OdeProblem {
   /// Where the crossings stand in y; after a step they hold its integrals [J, kg, N s].
   std::size_t crossings_begin() const;
   bool flows() const { return scene_.terms.pressure; }
-  bool weakly_compressible() const { return weak_.has_value(); }
+  bool weakly_compressible() const { return acoustic_.has_value(); }
   bool has_elastic_solid() const { return elastic_.has_value(); }
   /// One projection after each step, with all geometry frozen over the step.
   bool projects_steps() const {
@@ -128,6 +125,7 @@ class Model : public OdeProblem {
   bool needs_surface() const;
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
+  void add_frozen_marangoni(const MutField& acceleration);
   double acoustic_step(double speed) const;
   std::size_t elastic_begin() const;
   std::size_t elastic_size() const;
@@ -153,17 +151,19 @@ class Model : public OdeProblem {
   terms::Buoyancy buoyancy_;
   terms::Shifting shifting_;
   terms::ProjectionOptions projection_options_;
-  std::optional<WeaklyCompressible> weak_;
+  std::optional<terms::AcousticPass> acoustic_;  ///< of weakly compressible scenes
   std::optional<terms::ElasticSolid> elastic_;
 
-  Components acceleration_, transport_, all_forces_;  ///< scratch, one entry per patch particle
+  Components acceleration_, transport_, all_forces_,
+      along_surface_;  ///< scratch, one entry per patch particle
   SymmetricComponents stress_rate_;
   std::vector<double> heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, start_x_;
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;
   std::vector<double> guess_, solve_h_b_, solve_h_x_;
   std::vector<double> last_y_;  ///< state that stage and patch stand for
-  bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false;
+  bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false,
+       marangoni_valid_ = false;
 };
 
 }  // namespace meltray::scene

@@ -104,10 +104,11 @@ std::string Model::blame(Index i, double dt) {
     });
   update_surface_pressure();
   if (weakly_compressible()) {
-    pull("pressure", [&](auto& a) { weak_->force.add_acceleration(stage, a); });
-    pull("surface force", [&](auto& a) { weak_->force.add_surface_force(stage, a); });
-    if (weak_->artificial.alpha > 0)
-      pull("artificial viscosity", [&](auto& a) { weak_->artificial.add_acceleration(stage, a); });
+    acoustic_->evaluate(stage);
+    pull("pressure", [&](auto& a) { acoustic_->add_pressure_force(stage, a); });
+    pull("surface force", [&](auto& a) { acoustic_->force.add_surface_force(stage, a); });
+    if (acoustic_->artificial.alpha > 0)
+      pull("artificial viscosity", [&](auto& a) { acoustic_->add_artificial_viscosity(stage, a); });
   } else {
     projection.assemble(stage);
   }

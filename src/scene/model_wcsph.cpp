@@ -22,51 +22,66 @@ terms::Tension tension_of(Tension t) {
 
 }  // namespace
 
-WeaklyCompressible::WeaklyCompressible(const Scene& scene) {
+terms::AcousticPass acoustic_pass(const Scene& scene) {
   const Flow& flow = scene.flow;
-  const double c = flow.sound_speed;
-  const terms::Tension tension = tension_of(flow.tension);
-  state = {c, flow.thermal_expansion, tension, scene.terms.gravity ? scene.domain.gravity : 0.0};
-  continuity = {c};
-  force = {flow.pressure_gradient == PressureGradient::sum ? terms::GradientForm::sum
-                                                           : terms::GradientForm::difference,
-           tension};
-  diffusion.sound_speed = c;
-  diffusion.coefficient = flow.density_diffusion == DensityDiffusion::none ? 0.0 : flow.diffusion_coefficient;
-  diffusion.form = flow.density_diffusion == DensityDiffusion::antuono
-                       ? terms::DiffusionForm::antuono
-                       : terms::DiffusionForm::molteni_colagrossi;
-  artificial.alpha = scene.terms.artificial_viscosity ? flow.artificial_viscosity : 0.0;
-  artificial.sound_speed = c;
+  terms::AcousticPass pass;
+  pass.state = {flow.sound_speed, flow.thermal_expansion, tension_of(flow.tension),
+                scene.terms.gravity ? scene.domain.gravity : 0.0};
+  if (flow.density_diffusion != DensityDiffusion::none)
+    pass.diffusion.coefficient = flow.diffusion_coefficient;
+  pass.diffusion.form = flow.density_diffusion == DensityDiffusion::antuono
+                            ? terms::DiffusionForm::antuono
+                            : terms::DiffusionForm::molteni_colagrossi;
+  pass.force.form = flow.pressure_gradient == PressureGradient::sum ? terms::GradientForm::sum
+                                                                    : terms::GradientForm::difference;
+  if (scene.terms.artificial_viscosity) pass.artificial.alpha = flow.artificial_viscosity;
+  return pass;
+}
+
+void Model::find_pairs(double skin) {
+  if (acoustic_) acoustic_->find_pairs(stage, skin);
 }
 
 void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings) {
   const auto timer = timers_.measure(Part::pressure);
-  const WeaklyCompressible& w = *weak_;
   density_rate_.assign(stage.size(), 0.0);
   rates.density = density_rate_.data();
-  w.continuity.add_rate(stage, rates.density);
-  if (w.diffusion.coefficient > 0) w.diffusion.add_rate(stage, rates.density);
-  w.force.add_acceleration(stage, rates.acceleration);
-  w.force.add_surface_force(stage, rates.acceleration);
+  acoustic_->evaluate(stage);
+  acoustic_->add_density_rate(stage, rates.density);
+  acoustic_->add_pressure_force(stage, rates.acceleration);
+  acoustic_->force.add_surface_force(stage, rates.acceleration);
   crossings.pressure = force_gained();
-  if (w.artificial.alpha > 0) {
-    w.artificial.add_acceleration(stage, rates.acceleration);
+  if (acoustic_->artificial.alpha > 0) {
+    acoustic_->add_artificial_viscosity(stage, rates.acceleration);
     crossings.viscosity += force_gained();
   }
   if (has_elastic_solid()) add_elastic_rates(rates);
   note_largest_acceleration();
 }
 
+/// The surface stands still within a step, and so does the force along it.
+void Model::add_frozen_marangoni(const MutField& acceleration) {
+  if (!marangoni_valid_) {
+    for (int c = 0; c < constants_.dim; ++c) along_surface_[c].assign(stage.size(), 0.0);
+    marangoni_.add_acceleration(stage, view(along_surface_));
+    marangoni_valid_ = true;
+  }
+  for (int c = 0; c < constants_.dim; ++c)
+    parallel_for(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      acceleration[c][i] += along_surface_[c][i];
+    });
+}
+
 double Model::acoustic_step(double speed) const {
   // The factor on alpha is the viscous part of the limit, Monaghan 1989.
-  const double c = scene_.flow.sound_speed * (1 + 0.6 * weak_->artificial.alpha);
+  const double c = scene_.flow.sound_speed * (1 + 0.6 * acoustic_->artificial.alpha);
   return scene_.time.cfl_acoustic * constants_.smoothing / (c + speed);
 }
 
 double Model::density_on_melting(Index i) const {
   const double c = scene_.flow.sound_speed;
-  return weak_->state.reference_density(constants_, stage.temperature[i]) + patch.pressure[i] / (c * c);
+  return acoustic_->state.reference_density(constants_, stage.temperature[i]) + patch.pressure[i] / (c * c);
 }
 
 }  // namespace meltray::scene

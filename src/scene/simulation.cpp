@@ -83,6 +83,7 @@ void Simulation::Impl::select() {
   for (Index i = 0; i < n; ++i)
     model.stage.heat[i] = !model.patch.wall[i] && (extra[i] || model.patch.liquid[i] || wall_of_melt[i]);
   terms::prepare_stage(model.stage);
+  model.find_pairs(skin(scene) * constants.spacing);
   if (!everything) {
     for (Index g : in_state_list) in_state[g] = 0;
     in_state_list.clear();

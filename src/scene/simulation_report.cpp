@@ -188,7 +188,7 @@ void Simulation::archive(Archive& a) {
   std::string limiters;
   for (const auto& [name, count] : k.limiter) limiters += fmt::format("{}={};", name, count);
   a.value("counters/limiter", limiters);
-  Partitions& part = s.model.partitions;
+  Partitions part = s.model.partitions;
   for (auto [name, item] : {std::pair{"conduction", &part.conduction},
                             {"viscosity", &part.viscosity},
                             {"interface_viscosity", &part.interface_viscosity},
@@ -197,6 +197,7 @@ void Simulation::archive(Archive& a) {
     a.value(std::string("partitions/") + name, value);
     *item = value != 0;
   }
+  s.model.take_up(part);
   s.integrator.archive(a);
   if (s.laser) s.laser->archive(a);
 

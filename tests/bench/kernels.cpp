@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "meltray/terms/conduction.hpp"
+#include "meltray/terms/pressure/acoustic_pass.hpp"
 #include "meltray/terms/pressure/projection.hpp"
 #include "meltray/terms/viscosity.hpp"
 #include "unit/terms/stage_setup.hpp"
@@ -127,6 +128,44 @@ void pressure_solve(benchmark::State& state) {
   state.counters["particles"] = static_cast<double>(b.patch.size());
 }
 
+/// Continuity, pressure and artificial viscosity; with Antuono's diffusion where range(1) is 1.
+void acoustic_pass(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::AcousticPass pass;
+  pass.state.sound_speed = 40;
+  pass.artificial.alpha = 0.1;
+  if (state.range(1)) pass.diffusion.coefficient = 0.1;
+  b.patch.density.assign(b.patch.size(), b.constants.density);
+  b.evaluate(pass);
+  for (auto _ : state) pass.evaluate(b.stage);
+  count(state, b);
+  state.SetLabel(terms::AcousticPass::instructions());
+}
+
+/// Positions and fields into octets; no walls here.
+void acoustic_gather(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::AcousticPass pass;
+  b.patch.density.assign(b.patch.size(), b.constants.density);
+  b.evaluate(pass);
+  for (auto _ : state) pass.gather(b.stage);
+  count(state, b);
+}
+
+void acoustic_pairs(benchmark::State& state) {
+  Ball& b = ball(state);
+  terms::AcousticPass pass;
+  for (auto _ : state) pass.find_pairs(b.stage, 0);
+  count(state, b);
+  sph::ClusterSet set;
+  sph::ClusterList list;
+  set.sort(b.patch, std::vector<std::uint8_t>(b.patch.size(), 1), 1, kSpacing, {});
+  list.build(set, set, 2 * b.constants.smoothing);
+  const double lanes = 1.0 * list.start()[set.groups()] * sph::kGroupRows * sph::kLanes;
+  state.counters["useful_lanes"] = static_cast<double>(b.pairs.pairs()) / lanes;
+  state.counters["slots"] = set.slots();
+}
+
 }  // namespace
 
 #define MELTRAY_SIZES ->Arg(14)->Arg(27)->Arg(46)->Unit(benchmark::kMillisecond)->UseRealTime()
@@ -135,6 +174,9 @@ BENCHMARK(list_refresh) MELTRAY_SIZES;
 BENCHMARK(surface) MELTRAY_SIZES;
 BENCHMARK(viscous_product) MELTRAY_SIZES;
 BENCHMARK(conduction_product) MELTRAY_SIZES;
+BENCHMARK(acoustic_pass)->ArgsProduct({{14, 27, 46}, {0, 1}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(acoustic_gather) MELTRAY_SIZES;
+BENCHMARK(acoustic_pairs) MELTRAY_SIZES;
 BENCHMARK(pressure_assembly) MELTRAY_SIZES;
 BENCHMARK(pressure_product) MELTRAY_SIZES;
 BENCHMARK(pressure_solve)->ArgsProduct({{14, 27, 46}, {3, 6}})->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -61,6 +61,8 @@ class PairList {
   double nearest(int c, double difference) const {
     return period_[c] > 0 ? difference - period_[c] * std::rint(difference / period_[c]) : difference;
   }
+  /// Period in each direction [m]; 0 where not periodic.
+  const std::array<double, 3>& period() const { return period_; }
   std::size_t bytes() const;
   std::size_t pairs() const { return j_.size(); }
 

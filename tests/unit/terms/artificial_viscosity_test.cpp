@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "meltray/terms/artificial_viscosity.hpp"
+#include "meltray/terms/pressure/acoustic_pass.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -20,11 +20,12 @@ struct Liquid : StageSetup {
     prepare(Vec3::Constant(-0.6), Vec3::Constant(1.6));
   }
   Components acceleration() {
+    AcousticPass pass;
+    pass.state.sound_speed = kSound;
+    pass.artificial.alpha = kAlpha;
+    evaluate(pass);
     Components a = zeros();
-    ArtificialViscosity viscosity;
-    viscosity.alpha = kAlpha;
-    viscosity.sound_speed = kSound;
-    viscosity.add_acceleration(stage, view(a));
+    pass.add_artificial_viscosity(stage, view(a));
     return a;
   }
 };

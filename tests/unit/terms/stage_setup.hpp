@@ -9,6 +9,7 @@
 #include "meltray/materials/material.hpp"
 #include "meltray/particles/patch.hpp"
 #include "meltray/sph/pairs.hpp"
+#include "meltray/terms/pressure/acoustic_pass.hpp"
 #include "meltray/terms/stage.hpp"
 
 namespace meltray::test {
@@ -146,6 +147,14 @@ struct StageSetup {
     for (Index i = 0; i < patch.size(); ++i)
       stage.temperature[i] = constants.material.temperature(patch.h[i]);
     terms::compute_surface(stage);
+  }
+
+  /// Pairs, pressures and sums of a weakly compressible scene at the patch's densities.
+  void evaluate(terms::AcousticPass& pass) {
+    pass.find_pairs(stage, 0);
+    pass.state.update(stage);
+    pass.gather(stage);
+    pass.evaluate(stage);
   }
 
   Vec3 position(Index i) const { return vector(patch.x, i); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "meltray/terms/pressure/weakly_compressible.hpp"
+#include "meltray/terms/pressure/acoustic_pass.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -12,6 +12,12 @@ using meltray::test::StageSetup;
 namespace {
 
 constexpr double kSound = 40;
+
+AcousticPass pass_of(const EquationOfState& eos) {
+  AcousticPass pass;
+  pass.state = eos;
+  return pass;
+}
 
 /// Liquid block [0, 1]^dim (2-D) or half of it (3-D) of spacing 0.1 in free space.
 struct Block : StageSetup {
@@ -29,6 +35,24 @@ struct Block : StageSetup {
     for (Index i = 0; i < patch.size(); ++i)
       patch.density[i] = eos.reference_density(constants, stage.temperature[i]) + excess(position(i));
     eos.update(stage);
+  }
+  std::vector<double> density_rate(AcousticPass& pass) {
+    evaluate(pass);
+    std::vector<double> rate(patch.size(), 0.0);
+    pass.add_density_rate(stage, rate.data());
+    return rate;
+  }
+  /// Of the sum over pairs alone.
+  Components pressure_force(AcousticPass& pass) {
+    evaluate(pass);
+    Components a = zeros();
+    pass.add_pressure_force(stage, view(a));
+    return a;
+  }
+  Components pressure_force(const EquationOfState& eos, GradientForm form) {
+    AcousticPass pass = pass_of(eos);
+    pass.force.form = form;
+    return pressure_force(pass);
   }
   /// Sum of m a, over the sum of m |a|.
   double net_force(const Components& a) const {
@@ -82,29 +106,23 @@ TEST_CASE("continuity, Eq. (2): uniform expansion thins, rotation does not") {
   Block b(dim);
   const EquationOfState eos{kSound, false, Tension::full};
   b.set_excess(eos, [](const Vec3&) { return 0.0; });
-  const Continuity continuity{kSound};
-  std::vector<double> rate(b.patch.size(), 0.0);
+  AcousticPass pass = pass_of(eos);
   b.set_velocity([](const Vec3& x) { return Vec3(3 * x); });
-  continuity.add_rate(b.stage, rate.data());
-  // Inside, sums over the lattice are those that the second moment was made from: exact to the single
-  // precision in which pairs are stored.
+  const auto expanding = b.density_rate(pass);
+  // Inside, sums over the lattice are those that the second moment was made from.
   for (Index i = 0; i < b.patch.size(); ++i)
-    if (b.deep(i, 0.3)) CHECK(rate[i] == Approx(-3.0 * dim * 7000).epsilon(1e-7));
-  std::fill(rate.begin(), rate.end(), 0.0);
+    if (b.deep(i, 0.3)) CHECK(expanding[i] == Approx(-3.0 * dim * 7000).epsilon(1e-12));
   b.set_velocity([](const Vec3& x) { return Vec3(-x[1], x[0], 0); });
-  continuity.add_rate(b.stage, rate.data());
-  for (double r : rate) CHECK(std::abs(r) < 1e-8 * 7000);
+  for (double r : b.density_rate(pass)) CHECK(std::abs(r) < 1e-11 * 7000);
 }
 
 TEST_CASE("pressure force: a linear pressure gives -grad p / rho, any pressure conserves momentum") {
   const int dim = GENERATE(2, 3);
   const Tension tension = GENERATE(Tension::full, Tension::none, Tension::artificial_stress);
   const EquationOfState eos{kSound, false, tension};
-  const PressureForce force{GradientForm::sum, tension};
   Block lattice(dim);
   lattice.set_excess(eos, [](const Vec3& x) { return 0.1 * (1 + x[0]); });
-  Components a = lattice.zeros();
-  force.add_acceleration(lattice.stage, view(a));
+  Components a = lattice.pressure_force(eos, GradientForm::sum);
   // Positive pressure: artificial stress adds 1 % of it times (W/W(dx))^4, here a sum over nearest
   // neighbours.
   const double share = tension == Tension::artificial_stress ? 0.02 : 1e-4;
@@ -113,24 +131,22 @@ TEST_CASE("pressure force: a linear pressure gives -grad p / rho, any pressure c
 
   Block jittered(dim, 0.2);
   jittered.set_excess(eos, [](const Vec3& x) { return 20 * std::sin(7 * x[0]) * std::cos(5 * x[1]); });
-  a = jittered.zeros();
-  force.add_acceleration(jittered.stage, view(a));
+  a = jittered.pressure_force(eos, GradientForm::sum);
   CHECK(jittered.net_force(a) < 1e-13);
 }
 
 TEST_CASE("pressure force, difference form: the same at the surface, no force from disorder inside") {
   Block b(2, 0.2);
-  b.set_excess({kSound, false, Tension::full}, [](const Vec3&) { return 5.0; });
+  const EquationOfState eos{kSound, false, Tension::full};
+  b.set_excess(eos, [](const Vec3&) { return 5.0; });
   b.update();
-  Components sum = b.zeros(), difference = b.zeros();
-  PressureForce{GradientForm::sum, Tension::full}.add_acceleration(b.stage, view(sum));
-  const PressureForce force{GradientForm::difference, Tension::full};
-  force.add_acceleration(b.stage, view(difference));
-  force.add_surface_force(b.stage, view(difference));
+  const Components sum = b.pressure_force(eos, GradientForm::sum);
+  Components difference = b.pressure_force(eos, GradientForm::difference);
+  PressureForce{GradientForm::difference}.add_surface_force(b.stage, view(difference));
   int surface = 0, inside = 0;
   for (Index i = 0; i < b.patch.size(); ++i) {
     if (b.stage.surface[i] == 1) {
-      CHECK((b.vector(difference, i) - b.vector(sum, i)).norm() < 1e-10 * b.vector(sum, i).norm());
+      CHECK((b.vector(difference, i) - b.vector(sum, i)).norm() < 1e-6 * b.vector(sum, i).norm());
       ++surface;
     } else if (b.stage.surface[i] == 0) {
       CHECK(b.vector(difference, i).norm() == 0);
@@ -145,10 +161,9 @@ TEST_CASE("pressure force, difference form: the same at the surface, no force fr
 TEST_CASE("artificial stress repels under tension and hardly changes pressure") {
   Block b(2, 0.2);
   const auto acceleration = [&](Tension tension, double excess) {
-    b.set_excess({kSound, false, tension}, [&](const Vec3&) { return excess; });
-    Components a = b.zeros();
-    PressureForce{GradientForm::sum, tension}.add_acceleration(b.stage, view(a));
-    return a;
+    const EquationOfState eos{kSound, false, tension};
+    b.set_excess(eos, [&](const Vec3&) { return excess; });
+    return b.pressure_force(eos, GradientForm::sum);
   };
   // Work of the force on a uniform stretch, sum m a.x: tension pulls inwards, artificial stress less.
   const auto outward = [&](const Components& a) {
@@ -170,30 +185,30 @@ TEST_CASE("a body of uniform pressure under the same surface pressure is at rest
   const int dim = GENERATE(2, 3);
   Block b(dim, 0.2);
   const double excess = 5, q = kSound * kSound * excess;
-  b.set_excess({kSound, false, Tension::full}, [&](const Vec3&) { return excess; });
+  const EquationOfState eos{kSound, false, Tension::full};
+  b.set_excess(eos, [&](const Vec3&) { return excess; });
   b.update();
   b.stage.surface_pressure.assign(b.patch.size(), q);
-  Components a = b.zeros();
-  const PressureForce force{GENERATE(GradientForm::sum, GradientForm::difference), Tension::full};
+  const PressureForce force{GENERATE(GradientForm::sum, GradientForm::difference)};
   double before = 0, after = 0;
   for (Index i = 0; i < b.patch.size(); ++i)
     before = std::max(before, 2 * q / 7000 * b.vector(b.stage.grad_c, i).norm());
-  force.add_acceleration(b.stage, view(a));
+  Components a = b.pressure_force(eos, force.form);
   force.add_surface_force(b.stage, view(a));
   for (Index i = 0; i < b.patch.size(); ++i) after = std::max(after, b.vector(a, i).norm());
-  CHECK(after < 1e-12 * before);
+  // The gradient of the colour function comes from pairs in single precision.
+  CHECK(after < 1e-6 * before);
 }
 
 TEST_CASE("density diffusion conserves volume times excess and dissipates its noise") {
   const auto form = GENERATE(DiffusionForm::molteni_colagrossi, DiffusionForm::antuono);
   Block b(2, 0.2);
   test::Noise noise(3);
-  b.set_excess({kSound, false, Tension::full}, [&](const Vec3&) { return 10 * noise(); });
-  DensityDiffusion diffusion;
-  diffusion.form = form;
-  diffusion.sound_speed = kSound;
-  std::vector<double> rate(b.patch.size(), 0.0);
-  diffusion.add_rate(b.stage, rate.data());
+  const EquationOfState eos{kSound, false, Tension::full};
+  b.set_excess(eos, [&](const Vec3&) { return 10 * noise(); });
+  AcousticPass pass = pass_of(eos);
+  pass.diffusion = {form, 0.1};
+  const auto rate = b.density_rate(pass);
   double sum = 0, size = 0, work = 0;
   for (Index i = 0; i < b.patch.size(); ++i) {
     sum += b.stage.volume[i] * rate[i];
@@ -207,18 +222,16 @@ TEST_CASE("density diffusion conserves volume times excess and dissipates its no
 TEST_CASE(
     "density diffusion: Antuono leaves a linear profile alone up to the surface, the plain form does not") {
   Block b(2, 0.2);
-  b.set_excess({kSound, false, Tension::full}, [](const Vec3& x) { return 10 * (1 - x[1]); });
+  const EquationOfState eos{kSound, false, Tension::full};
+  b.set_excess(eos, [](const Vec3& x) { return 10 * (1 - x[1]); });
   const auto largest = [&](DiffusionForm form) {
-    DensityDiffusion diffusion;
-    diffusion.form = form;
-    diffusion.sound_speed = kSound;
-    std::vector<double> rate(b.patch.size(), 0.0);
-    diffusion.add_rate(b.stage, rate.data());
+    AcousticPass pass = pass_of(eos);
+    pass.diffusion = {form, 0.1};
     double most = 0;
-    for (double r : rate) most = std::max(most, std::abs(r));
+    for (double r : b.density_rate(pass)) most = std::max(most, std::abs(r));
     return most;
   };
-  CHECK(largest(DiffusionForm::antuono) < 1e-6 * largest(DiffusionForm::molteni_colagrossi));
+  CHECK(largest(DiffusionForm::antuono) < 1e-10 * largest(DiffusionForm::molteni_colagrossi));
 }
 
 TEST_CASE("density diffusion does not smear a thermal profile of the density") {
@@ -226,12 +239,10 @@ TEST_CASE("density diffusion does not smear a thermal profile of the density") {
   b.set_temperature([](const Vec3& x) { return 1900 + 800 * x[0] * x[0]; });
   const EquationOfState eos{kSound, true, Tension::full};
   b.set_excess(eos, [](const Vec3&) { return 0.0; });
-  DensityDiffusion diffusion;
-  diffusion.sound_speed = kSound;
-  std::vector<double> rate(b.patch.size(), 0.0);
-  diffusion.add_rate(b.stage, rate.data());
+  AcousticPass pass = pass_of(eos);
+  pass.diffusion = {DiffusionForm::antuono, 0.1};
   // Round-off of rho - rho_0(T) is 1e-12 kg/m^3; the profile itself spans 700.
-  for (double r : rate) CHECK(std::abs(r) < 1e-8);
+  for (double r : b.density_rate(pass)) CHECK(std::abs(r) < 1e-8);
 }
 
 TEST_CASE("pressure of walls continues that of a tank at rest") {
@@ -246,8 +257,10 @@ TEST_CASE("pressure of walls continues that of a tank at rest") {
   const EquationOfState eos{c, false, Tension::full, g};
   const auto pressure = [&](Index i) { return 7000 * g * (1 - b.patch.x[1][i]); };
   for (Index i = 0; i < b.patch.size(); ++i) b.patch.density[i] = 7000 + pressure(i) / (c * c);
+  AcousticPass pass = pass_of(eos);
+  pass.find_pairs(b.stage, 0);
   eos.update(b.stage);
-  eos.extrapolate(b.stage);
+  pass.gather(b.stage);
   int walls = 0;
   for (Index i = 0; i < b.patch.size(); ++i) {
     if (!b.patch.wall[i] || b.patch.x[1][i] < -0.2) continue;

@@ -6,7 +6,13 @@
 /// Pressure of weakly compressible SPH: the density is a field of the state, and pressure follows from it.
 /// Sums over neighbours are divided by the kernel's second moment on a lattice, as in the projection, so that
 /// gradients of linear fields and the speed of sound come out right at the given h / dx. Everything here
-/// reads and writes Patch::density and Stage::excess, which only such scenes have.
+/// reads and writes Patch::density and Stage::excess, which only such scenes have. The sums over pairs are
+/// made in one pass, acoustic_pass.hpp:
+///   continuity, paper Eq. (2): d rho_i/dt = rho_i sum_j V_j (v_i - v_j).grad W_ij (the density of a particle
+///   that flies alone returns to rho_0(T) within the time sound takes over a smoothing length);
+///   pressure of walls and of resting solid next to the melt, Adami et al. 2012, eq. 27:
+///   p_w = sum_f (p_f + rho_f g.(x_w - x_f)) W_wf / sum_f W_wf;
+///   and the terms below.
 namespace meltray::terms {
 
 /// What becomes of negative pressure:
@@ -26,16 +32,6 @@ struct EquationOfState {
   double pressure(double excess) const;
   /// Volumes, excess densities rho - rho_0(T) and pressures of moving particles from density and temperature.
   void update(Stage& stage) const;
-  /// Pressure of walls and of resting solid next to the melt, Adami et al. 2012, eq. 27:
-  ///   p_w = sum_f (p_f + rho_f g.(x_w - x_f)) W_wf / sum_f W_wf.
-  void extrapolate(Stage& stage) const;
-};
-
-/// Continuity, paper Eq. (2): d rho_i/dt = rho_i sum_j V_j (v_i - v_j).grad W_ij. The density of a particle
-/// that flies alone returns to rho_0(T) within the time sound takes over a smoothing length.
-struct Continuity {
-  double sound_speed = 0;  ///< [m/s]
-  void add_rate(const Stage& stage, double* density_rate) const;
 };
 
 enum class DiffusionForm { molteni_colagrossi, antuono };
@@ -47,12 +43,7 @@ enum class DiffusionForm { molteni_colagrossi, antuono };
 /// thermal profile of the density is not smeared.
 struct DensityDiffusion {
   DiffusionForm form = DiffusionForm::antuono;
-  double coefficient = 0.1;  ///< delta
-  double sound_speed = 0;    ///< [m/s]
-  void add_rate(const Stage& stage, double* density_rate) const;
-
- private:
-  mutable Components gradient_;
+  double coefficient = 0;  ///< delta; 0: none
 };
 
 /// The pressure gradient of Eq. (3), first term, and how the surface pressure q (recoil and surface tension)
@@ -65,14 +56,19 @@ struct DensityDiffusion {
 /// A body of uniform pressure q is exactly at rest under both.
 enum class GradientForm { sum, difference };
 
+/// Where tension is handled by artificial stress, the sum over pairs has the repulsion R_ij f^4 of Monaghan
+/// 2000 (the difference form needs its part for negative pressures only).
 struct PressureForce {
   GradientForm form = GradientForm::difference;
-  Tension tension = Tension::full;
-  /// The sum over pairs, with the repulsion R_ij f^4 of Monaghan 2000 where tension is handled by artificial
-  /// stress (the difference form needs its part for negative pressures only).
-  void add_acceleration(const Stage& stage, const MutField& acceleration) const;
   /// What stands with grad c above.
   void add_surface_force(const Stage& stage, const MutField& acceleration) const;
+};
+
+/// Artificial viscosity of Monaghan 1992 between particles that approach each other (v_ij.x_ij < 0):
+///   a_i = sum_j m_j alpha c h (v_ij.x_ij) / (rho_ij (r^2 + 0.01 h^2)) grad W_ij,  rho_ij the mean density.
+/// Not smooth in v, so explicit only. Resting solid and no-slip walls take part, slip walls do not.
+struct ArtificialViscosity {
+  double alpha = 0;  ///< 0: none
 };
 
 }  // namespace meltray::terms

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "meltray/sph/clusters.hpp"
+#include "meltray/terms/pressure/weakly_compressible.hpp"
+
+namespace meltray::terms {
+
+struct AcousticFields;
+struct AcousticArguments;
+struct AcousticKernel;
+
+/// Everything that a weakly compressible scene sums over pairs at the pace of sound: pressure of the walls,
+/// continuity, density diffusion, pressure force and artificial viscosity, in one pass over clusters (two
+/// with Antuono's diffusion), with the geometry of the pairs at the positions of the moment. Terms are set up
+/// in the public members; one with a coefficient of zero costs nothing.
+class AcousticPass {
+ public:
+  EquationOfState state;
+  DensityDiffusion diffusion;
+  PressureForce force;
+  ArtificialViscosity artificial;
+
+  /// Which particles are pairs, once the stage's list has been built: those closer than the support and
+  /// `skin` [m].
+  void find_pairs(const Stage& stage, double skin);
+  /// Takes positions, velocities and what `state` has made of the densities, for evaluate(), and gives the
+  /// walls their pressures.
+  void gather(Stage& stage);
+  /// The sums over pairs; add_... hand them out.
+  void evaluate(const Stage& stage);
+  void add_density_rate(const Stage& stage, double* density_rate) const;
+  void add_pressure_force(const Stage& stage, const MutField& acceleration) const;
+  void add_artificial_viscosity(const Stage& stage, const MutField& acceleration) const;
+
+  /// Name of the instructions that the loops were compiled for.
+  static const char* instructions();
+  std::size_t bytes() const;
+
+ private:
+  /// A set of particles with its fields, one entry per slot.
+  struct Fields {
+    sph::ClusterSet set;
+    AlignedDoubles x[3], v[3], density, volume, pressure, drag, excess, gradient[3];
+    void pack(const Stage& stage, const std::vector<double>& drag_of);
+    AcousticFields view();
+  };
+  AcousticArguments arguments(const Stage& stage);
+  void renormalise_gradients(const Stage& stage);
+
+  std::vector<std::uint8_t> kind_;
+  std::vector<double> drag_;  ///< per particle of the patch [kg]
+  Fields melt_, wall_;
+  sph::ClusterList melt_melt_, melt_wall_, wall_melt_;
+  AlignedDoubles density_rate_, pressure_force_[3], viscous_force_[3], moment_[6];
+};
+
+}  // namespace meltray::terms

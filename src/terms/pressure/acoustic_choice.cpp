@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "meltray/core/errors.hpp"
+#include "terms/pressure/acoustic_kernel.hpp"
+
+namespace meltray::terms {
+
+namespace baseline {
+const AcousticKernel& choose(int dim, bool cubic_spline);
+}
+namespace v3 {
+const AcousticKernel& choose(int dim, bool cubic_spline);
+}
+namespace v4 {
+const AcousticKernel& choose(int dim, bool cubic_spline);
+}
+
+namespace {
+
+using Choose = const AcousticKernel& (*)(int dim, bool cubic_spline);
+
+/// The builds of the loops that this processor can run, best first.
+template <class F>
+void for_builds(F&& f) {
+  __builtin_cpu_init();
+#ifdef MELTRAY_WITH_V4
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    f(v4::choose);
+#endif
+#ifdef MELTRAY_WITH_V3
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+    f(v3::choose);
+#endif
+  f(baseline::choose);
+}
+
+Choose best() {
+  Choose chosen = nullptr;
+  std::string names;
+  const char* const asked = std::getenv("MELTRAY_INSTRUCTIONS");
+  for_builds([&](Choose build) {
+    const std::string_view name = build(3, false).instructions;
+    if (!names.empty()) names += ", ";
+    names += name;
+    if (!chosen && (!asked || name == asked)) chosen = build;
+  });
+  if (!chosen)
+    throw UsageError(
+        fmt::format("MELTRAY_INSTRUCTIONS: found \"{}\"; allowed on this processor: {}", asked, names));
+  return chosen;
+}
+
+}  // namespace
+
+const AcousticKernel& acoustic_kernel(int dim, bool cubic_spline) {
+  static const Choose choose = best();
+  return choose(dim, cubic_spline);
+}
+
+}  // namespace meltray::terms

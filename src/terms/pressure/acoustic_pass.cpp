@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/terms/pressure/acoustic_pass.hpp"
+
+#include <algorithm>
+
+#include "meltray/sph/renormalise.hpp"
+#include "terms/pressure/acoustic_kernel.hpp"
+
+namespace meltray::terms {
+
+namespace {
+
+/// Groups of rows that one task handles.
+constexpr Index kGroupsPerBlock = 32;
+/// Monaghan 2000: repulsion as a share of a negative pressure, and of the sum of two positive ones.
+constexpr double kUnderTension = 0.2, kUnderPressure = 0.01;
+/// Where empty slots are [m].
+constexpr double kNowhere = 1e30;
+
+enum Kind : std::uint8_t { kOther, kMelt, kWall };
+
+const AcousticKernel& kernel_of(const Stage& s) {
+  return acoustic_kernel(s.constants->dim, s.constants->kernel == sph::KernelType::cubic_spline);
+}
+
+using Loop = void (*)(const AcousticArguments&, Index, Index);
+
+void run(Loop loop, const AcousticArguments& a, Index groups) {
+  const Index blocks = (groups + kGroupsPerBlock - 1) / kGroupsPerBlock;
+#pragma omp parallel for schedule(dynamic, 1) if (blocks > 4)
+  for (Index b = 0; b < blocks; ++b)
+    loop(a, b * kGroupsPerBlock, std::min(groups, (b + 1) * kGroupsPerBlock));
+}
+
+/// Calls f(slot, particle) for the particles of a set.
+template <class F>
+void for_particles(const sph::ClusterSet& set, F&& f) {
+  parallel_for(set.slots(), [&](Index s) {
+    if (const Index i = set.particle()[s]; i >= 0) f(s, i);
+  });
+}
+
+template <int D>
+void renormalise(Index slots, const AlignedDoubles (&moments)[6], AlignedDoubles (&gradient)[3]) {
+  parallel_for(slots, [&](Index s) {
+    Eigen::Matrix<double, D, D> moment;
+    Eigen::Matrix<double, D, 1> g;
+    int n = 0;
+    for (int a = 0; a < D; ++a) {
+      g[a] = gradient[a][s];
+      for (int b = a; b < D; ++b) moment(a, b) = moment(b, a) = moments[n++][s];
+    }
+    g = sph::renormalisation<D>(moment) * g;
+    for (int a = 0; a < D; ++a) gradient[a][s] = g[a];
+  });
+}
+
+}  // namespace
+
+void AcousticPass::Fields::pack(const Stage& s, const std::vector<double>& drag_of) {
+  const Patch& p = *s.patch;
+  for (int c = 0; c < s.constants->dim; ++c) {
+    set.pack(p.x[c], kNowhere, x[c]);
+    set.pack(p.v[c], 0, v[c]);
+  }
+  set.pack(p.density, s.constants->density, density);
+  set.pack(s.volume, 0, volume);
+  set.pack(p.pressure, 0, pressure);
+  if (!drag_of.empty()) set.pack(drag_of, 0, drag);
+}
+
+AcousticFields AcousticPass::Fields::view() {
+  AcousticFields f{};
+  for (int c = 0; c < 3; ++c) {
+    f.x[c] = x[c].data();
+    f.v[c] = v[c].data();
+    f.gradient[c] = gradient[c].data();
+  }
+  f.density = density.data();
+  f.volume = volume.data();
+  f.pressure = pressure.data();
+  f.drag = drag.data();
+  f.excess = excess.data();
+  return f;
+}
+
+AcousticArguments AcousticPass::arguments(const Stage& s) {
+  const SceneConstants& k = *s.constants;
+  AcousticArguments a{};
+  a.melt = melt_.view();
+  a.wall = wall_.view();
+  a.melt_melt = {melt_melt_.start(), melt_melt_.octets()};
+  a.melt_wall = {melt_wall_.start(), melt_wall_.octets()};
+  a.wall_melt = {wall_melt_.start(), wall_melt_.octets()};
+  a.smoothing = k.smoothing;
+  for (int c = 0; c < k.dim; ++c) {
+    a.period[c] = s.pairs->period()[c];
+    a.inverse_period[c] = a.period[c] > 0 ? 1 / a.period[c] : 0;
+  }
+  a.continuity = 1 / k.lattice.second_moment;
+  a.diffusion = diffusion.coefficient * k.smoothing * state.sound_speed / k.lattice.second_moment;
+  a.own_pressure = force.form == GradientForm::sum ? 1 : -1;
+  if (state.tension == Tension::artificial_stress)
+    sph::with_dim(k.dim, [&](auto d) {
+      with_kernel<d>(k.kernel,
+                     [&](auto kernel) { a.inverse_w = 1 / decltype(kernel)::w(k.spacing, 1 / k.smoothing); });
+    });
+  a.stress_tension = kUnderTension;
+  a.stress_pressure = force.form == GradientForm::sum ? kUnderPressure : 0.0;
+  a.viscous = artificial.alpha > 0;
+  a.gravity = state.gravity;
+  a.density_rate = density_rate_.data();
+  for (int c = 0; c < 3; ++c) {
+    a.pressure_force[c] = pressure_force_[c].data();
+    a.viscous_force[c] = viscous_force_[c].data();
+  }
+  for (int m = 0; m < 6; ++m) a.moment[m] = moment_[m].data();
+  a.wall_pressure = wall_.pressure.data();
+  return a;
+}
+
+void AcousticPass::find_pairs(const Stage& s, double skin) {
+  const SceneConstants& k = *s.constants;
+  kind_.assign(s.size(), kOther);
+  for (Index i = 0; i < s.size(); ++i)
+    if (s.patch->liquid[i])
+      kind_[i] = kMelt;
+    else if (s.pairs->next_to_melt()[i])
+      kind_[i] = kWall;
+  melt_.set.sort(*s.patch, kind_, kMelt, k.spacing, s.pairs->period());
+  wall_.set.sort(*s.patch, kind_, kWall, k.spacing, s.pairs->period());
+  const double reach = 2 * k.smoothing + skin;
+  melt_melt_.build(melt_.set, melt_.set, reach);
+  melt_wall_.build(melt_.set, wall_.set, reach);
+  wall_melt_.build(wall_.set, melt_.set, reach);
+  density_rate_.resize(melt_.set.slots());
+  for (int c = 0; c < k.dim; ++c)
+    for (auto* field : {&pressure_force_[c], &viscous_force_[c], &melt_.gradient[c]})
+      field->assign(melt_.set.slots(), 0.0);
+  if (diffusion.coefficient > 0 && diffusion.form == DiffusionForm::antuono)
+    for (int m = 0; m < symmetric_count(k.dim); ++m) moment_[m].resize(melt_.set.slots());
+}
+
+void AcousticPass::gather(Stage& s) {
+  // Slip walls take no part in artificial viscosity.
+  if (artificial.alpha > 0) {
+    drag_.resize(s.size());
+    parallel_for(s.size(), [&](Index i) {
+      const int wall = s.patch->wall[i];
+      drag_[i] = wall && !s.constants->faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
+    });
+  }
+  melt_.pack(s, drag_);
+  melt_.set.pack(s.excess, 0, melt_.excess);
+  wall_.pack(s, drag_);
+  run(kernel_of(s).extrapolate, arguments(s), wall_.set.groups());
+  const bool pulls = state.tension != Tension::none;
+  for_particles(wall_.set, [&](Index slot, Index i) {
+    if (!pulls) wall_.pressure[slot] = std::max(wall_.pressure[slot], 0.0);
+    s.patch->pressure[i] = wall_.pressure[slot];
+  });
+}
+
+void AcousticPass::evaluate(const Stage& s) {
+  const AcousticArguments a = arguments(s);
+  const AcousticKernel& kernel = kernel_of(s);
+  if (diffusion.coefficient > 0 && diffusion.form == DiffusionForm::antuono) {
+    run(kernel.excess_gradient, a, melt_.set.groups());
+    sph::with_dim(s.constants->dim,
+                  [&](auto d) { renormalise<d>(melt_.set.slots(), moment_, melt_.gradient); });
+  }
+  run(kernel.rates, a, melt_.set.groups());
+}
+
+void AcousticPass::add_density_rate(const Stage& s, double* density_rate) const {
+  const double relax = state.sound_speed / s.constants->smoothing;
+  for_particles(melt_.set, [&](Index slot, Index i) {
+    density_rate[i] += density_rate_[slot];
+    if (s.loose[i]) density_rate[i] -= s.excess[i] * relax;
+  });
+}
+
+void AcousticPass::add_pressure_force(const Stage& s, const MutField& acceleration) const {
+  const double scale = 1 / s.constants->lattice.second_moment;
+  for_particles(melt_.set, [&](Index slot, Index i) {
+    const double factor = scale * s.volume[i] / s.patch->mass[i];
+    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] -= factor * pressure_force_[c][slot];
+  });
+}
+
+void AcousticPass::add_artificial_viscosity(const Stage& s, const MutField& acceleration) const {
+  const double strength = artificial.alpha * state.sound_speed * s.constants->smoothing;
+  for_particles(melt_.set, [&](Index slot, Index i) {
+    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] += strength * viscous_force_[c][slot];
+  });
+}
+
+const char* AcousticPass::instructions() {
+  return acoustic_kernel(3, false).instructions;
+}
+
+std::size_t AcousticPass::bytes() const {
+  std::size_t doubles = drag_.capacity() + density_rate_.capacity();
+  for (const Fields* f : {&melt_, &wall_}) {
+    doubles += f->density.capacity() + f->volume.capacity() + f->pressure.capacity() + f->drag.capacity() +
+               f->excess.capacity();
+    for (int c = 0; c < 3; ++c)
+      doubles += f->x[c].capacity() + f->v[c].capacity() + f->gradient[c].capacity();
+  }
+  for (int c = 0; c < 3; ++c) doubles += pressure_force_[c].capacity() + viscous_force_[c].capacity();
+  for (const auto& m : moment_) doubles += m.capacity();
+  return doubles * sizeof(double) + kind_.capacity() + melt_.set.bytes() + wall_.set.bytes() +
+         melt_melt_.bytes() + melt_wall_.bytes() + wall_melt_.bytes();
+}
+
+}  // namespace meltray::terms
