@@ -174,7 +174,7 @@ void Model::unpack(const double* y) {
 
 void Model::evaluate_patch(double t) {
   stage.t = t;
-  {
+  if (needs_pairs()) {
     const auto timer = timers_.measure(Part::neighbours);
     pairs.refresh(patch, constants_.kernel);
   }
@@ -190,7 +190,7 @@ void Model::update_temperature(Index i) {
 
 /// Surface, and the coefficients that rest on it.
 void Model::update_surface() {
-  if (needs_surface()) {
+  if (needs_surface() && needs_pairs()) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);
     if (scene_.terms.wetting) wetting_.turn_normals(stage);

@@ -44,9 +44,12 @@ class Model : public OdeProblem {
  public:
   Model(const Scene& scene, const terms::SceneConstants& constants, Timers& timers);
 
-  /// The pairs of a patch whose list has been built anew, with the same skin [m], and whose stage is
-  /// prepared.
-  void find_pairs(double skin);
+  /// False in scenes whose sums over pairs are all made by the acoustic pass: they have no list of pairs, and
+  /// no surface besides.
+  bool needs_pairs() const;
+  /// The pairs of a patch that has been selected anew and whose stage is prepared: `skin` [m] as in the list,
+  /// periods of the box [m].
+  void find_pairs(double skin, const std::array<double, 3>& period);
   /// Geometry, temperatures and surface of the patch as it is. The stage must have been prepared for it.
   void evaluate_patch(double t);
   /// Copies the evaluated patch into y and describes its fields.

@@ -38,8 +38,15 @@ terms::AcousticPass acoustic_pass(const Scene& scene) {
   return pass;
 }
 
-void Model::find_pairs(double skin) {
-  if (acoustic_) acoustic_->find_pairs(stage, skin);
+bool Model::needs_pairs() const {
+  const Terms& t = scene_.terms;
+  return !weakly_compressible() || acoustic_->force.form == terms::GradientForm::difference || t.viscosity ||
+         t.interface_viscosity || t.surface_tension || t.wetting || t.marangoni || t.recoil ||
+         scene_.exchanges_heat() || shifting_.coefficient > 0 || has_elastic_solid();
+}
+
+void Model::find_pairs(double skin, const std::array<double, 3>& period) {
+  if (acoustic_) acoustic_->find_pairs(stage, skin, period);
 }
 
 void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings) {

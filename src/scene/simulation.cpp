@@ -50,7 +50,7 @@ void Simulation::Impl::select() {
   const bool everything = scene.heat.bulk_interval <= 0;
   if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
-    reload(particles, model.patch);
+    if (!written) reload(particles, model.patch);
     if (model.weakly_compressible()) return;  // nothing melted: the stage stands as well
   } else {
     if (everything)
@@ -62,16 +62,15 @@ void Simulation::Impl::select() {
     if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, scene.flow.elastic_depth);
     const Index n = model.patch.size();
     extra.assign(n, 0);
-    const bool heats =
-        scene.terms.conduction || scene.laser || scene.terms.evaporation || scene.terms.radiation;
-    if (everything && heats) {
+    if (everything && scene.exchanges_heat()) {
       for (Index i = 0; i < n; ++i) extra[i] = !model.patch.wall[i];
     } else if (laser) {
       for (Index i : laser->lit()) in_state[i] |= 2;
       for (Index i = 0; i < n; ++i) extra[i] = (in_state[model.patch.global[i]] & 2) != 0;
       for (Index i : laser->lit()) in_state[i] &= 1;
     }
-    model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, list_rows());
+    if (model.needs_pairs())
+      model.pairs.build(model.patch, selector.grid(), skin(scene) * constants.spacing, list_rows());
     ++counters.list_builds;
     lists_valid = true;
     deposited = false;
@@ -80,10 +79,10 @@ void Simulation::Impl::select() {
   const Index n = model.patch.size();
   const auto& wall_of_melt = model.pairs.next_to_melt();
   model.stage.heat.assign(n, 0);
-  for (Index i = 0; i < n; ++i)
+  for (Index i = 0; i < n && scene.exchanges_heat(); ++i)
     model.stage.heat[i] = !model.patch.wall[i] && (extra[i] || model.patch.liquid[i] || wall_of_melt[i]);
   terms::prepare_stage(model.stage);
-  model.find_pairs(skin(scene) * constants.spacing);
+  model.find_pairs(skin(scene) * constants.spacing, selector.grid().period());
   if (!everything) {
     for (Index g : in_state_list) in_state[g] = 0;
     in_state_list.clear();
@@ -112,7 +111,7 @@ void Simulation::Impl::prepare() {
     laser->deposit(model.stage, model.laser_power);
     deposited = true;
   }
-  mark_surface();
+  if (model.needs_pairs()) mark_surface();
   prepared = true;
 }
 
@@ -147,6 +146,7 @@ StepInfo Simulation::Impl::step(double t_stop) {
   book(report);
   if (model.has_elastic_solid()) selector.follow(particles, model.patch);
   write_back(model.patch, particles);
+  written = true;
   update_temperatures();
   change_phases();
   if (model.flows()) remove_escaped();
@@ -189,15 +189,13 @@ void Simulation::Impl::check(const StepReport& report) {
     return !(v2 < kRunaway * kRunaway) || !std::isfinite(x2) || !(std::abs(p.h[i]) < kHottest);
   };
   Index first = -1;
-  for (Index i : model.flows() ? model.stage.moving : model.stage.heated)
-    if (bad(i)) {
-      first = i;
-      break;
-    }
-  for (Index i : model.stage.elastic)
-    if (first < 0 && bad(i)) first = i;
-  for (Index i : model.stage.heated)
-    if (first < 0 && !(std::abs(p.h[i]) < kHottest)) first = i;
+  for (const auto* which : {&model.stage.moving, &model.stage.elastic, &model.stage.heated}) {
+    const auto count = static_cast<std::ptrdiff_t>(which->size());
+    if (first >= 0 ||
+        parallel_max(count, 0.0, [&](std::ptrdiff_t k) { return bad((*which)[k]) ? 1.0 : 0.0; }) == 0)
+      continue;
+    first = *std::find_if(which->begin(), which->end(), bad);
+  }
   if (first < 0) return;
   std::string text = fmt::format(
       "particle {} is not finite or runs away at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, "
@@ -206,9 +204,8 @@ void Simulation::Impl::check(const StepReport& report) {
       "surface "
       "pressure {:.4g} Pa",
       p.global[first], report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
-      p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first],
-      model.pairs.end(first) - model.pairs.begin(first), p.pressure[first],
-      model.stage.surface_pressure[first]);
+      p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first),
+      p.pressure[first], model.stage.surface_pressure[first]);
   const Index particle = p.global[first];
   lists_valid = false;
   select();
@@ -256,6 +253,21 @@ void Simulation::Impl::mark_surface() {
       on_surface[model.patch.global[i]] = 1;
       surface_list.push_back(model.patch.global[i]);
     }
+}
+
+/// The surface of a scene whose steps need none, for output: nothing that steps rest on changes.
+void Simulation::Impl::find_surface() {
+  if (model.needs_pairs() || !prepared) return;
+  terms::Stage& stage = model.stage;
+  sph::PairList list;
+  list.build(model.patch, selector.grid(), 0, extra);
+  list.refresh(model.patch, constants.kernel);
+  const std::vector<std::uint8_t> loose = stage.loose;
+  stage.pairs = &list;
+  terms::compute_surface(stage);
+  stage.pairs = &model.pairs;
+  stage.loose = loose;
+  mark_surface();
 }
 
 }  // namespace meltray::scene

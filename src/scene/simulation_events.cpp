@@ -45,6 +45,7 @@ void Simulation::Impl::change_phases() {
       if (model.weakly_compressible()) particles.density[g] = model.density_on_melting(i);
       if (model.has_elastic_solid()) release(g);
       lists_valid = lists_valid && !model.flows();
+      written = false;
     } else if (model.patch.liquid[i] && h <= solidus) {
       if (model.flows() && !touches_solid(i)) continue;
       for (int c = 0; c < constants.dim; ++c) {
@@ -58,6 +59,7 @@ void Simulation::Impl::change_phases() {
         particles.density[g] = model.density_of_solid(particles.temperature[g]);
       if (model.has_elastic_solid()) particles.flags[g] |= kMobile;
       lists_valid = lists_valid && !model.flows();
+      written = false;
     }
   }
 }
@@ -67,14 +69,25 @@ void Simulation::Impl::change_phases() {
 /// as clamped; farther behind it is a loss of the cropping and counts as removed. Periodic directions wrap
 /// around.
 void Simulation::Impl::remove_escaped() {
-  for (Index i : model.stage.moving) {
+  const auto& moving = model.stage.moving;
+  const auto left = [&](std::ptrdiff_t k) {
+    for (int c = 0; c < constants.dim; ++c) {
+      const double x = model.patch.x[c][moving[k]];
+      if (x < scene.domain.min[c] || x > scene.domain.max[c]) return 1.0;
+    }
+    return 0.0;
+  };
+  if (parallel_max(static_cast<std::ptrdiff_t>(moving.size()), 0.0, left) == 0) return;
+  for (Index i : moving) {
     const Index g = model.patch.global[i];
     bool outside = false, through_wall = false;
     for (int c = 0; c < constants.dim; ++c) {
       double& x = particles.x[c][g];
       const double period = selector.grid().period()[c];
       if (period > 0) {
-        x -= period * std::floor((x - scene.domain.min[c]) / period);
+        const double periods = std::floor((x - scene.domain.min[c]) / period);
+        x -= period * periods;
+        written = written && periods == 0;
         continue;
       }
       const bool below = x<scene.domain.min[c], above = x> scene.domain.max[c];
@@ -88,6 +101,7 @@ void Simulation::Impl::remove_escaped() {
           particles.v[c][g] = 0;
         }
         x = plane;
+        written = false;
         ++counters.clamped;
         continue;
       }
@@ -107,6 +121,7 @@ void Simulation::Impl::remove_escaped() {
 void Simulation::Impl::exchange_bulk(double until) {
   if (until < next_bulk) return;
   const auto timer = timers.measure(Part::heat);
+  written = false;
   if (bulk_exchanges++ % kExchangesPerBuild == 0)
     bulk.build(constants, selector, particles, scene.heat.initial_temperature);
   bulk.exchange(constants, until - bulk_from, in_state, particles);

@@ -54,6 +54,7 @@ struct Simulation::Impl {
   void note_motion(double dt);
   void update_temperatures();
   void mark_surface();
+  void find_surface();
   void check(const StepReport& report);
   void book(const StepReport& report);
   bool touches_solid(Index i) const;
@@ -81,6 +82,7 @@ struct Simulation::Impl {
   double largest_density_variation = 0;
   bool begun = false, lists_valid = false;
   bool prepared = false;   ///< patch and surface are those of the particles in the store
+  bool written = false;    ///< the store holds what the patch holds
   bool deposited = false;  ///< the laser power of the present patch is known
   double list_motion = 0;
 

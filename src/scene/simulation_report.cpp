@@ -37,6 +37,7 @@ Particles& Simulation::particles() {
   return impl_->particles;
 }
 const std::vector<std::uint8_t>& Simulation::on_surface() const {
+  impl_->find_surface();
   return impl_->on_surface;
 }
 Timers& Simulation::timers() {
@@ -46,7 +47,7 @@ double Simulation::evaporative_loss() const {
   return impl_->evaporative_loss;
 }
 std::size_t Simulation::active_count() const {
-  return impl_->model.stage.heated.size();
+  return std::max(impl_->model.stage.heated.size(), impl_->model.stage.moving.size());
 }
 const laser::Tracer* Simulation::tracer() const {
   return impl_->laser ? &impl_->laser->tracer() : nullptr;
@@ -203,7 +204,7 @@ void Simulation::archive(Archive& a) {
 
   // From here on a run that goes on and one that is resumed are in the same state: everything derived is
   // rebuilt.
-  s.lists_valid = s.deposited = s.prepared = false;
+  s.lists_valid = s.deposited = s.prepared = s.written = false;
   s.bulk_exchanges = 0;
   if (!a.loading()) {
     s.selector = PatchSelector(s.selector.grid(), s.particles);

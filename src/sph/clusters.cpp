@@ -172,23 +172,26 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
           if (apart) continue;
           const auto s = static_cast<Index>(source - sources.box_.begin());
           for (Index g = 0; g < kGroups; ++g) {
-            double least = std::numeric_limits<double>::max();
+            Index near = 0;
             for (Index row = octet * kLanes + g * kGroupRows; row < octet * kLanes + (g + 1) * kGroupRows;
                  ++row) {
               double xi[D];
               for (int c = 0; c < D; ++c) xi[c] = rows.position_[c][row] + shift[c];
               if (rows.particle_[row] < 0) continue;
-#pragma omp simd reduction(min : least)
+              Index of_row = 0;
+#pragma omp simd reduction(+ : of_row)
               for (Index l = 0; l < kLanes; ++l) {
                 double r2 = 0;
                 for (int c = 0; c < D; ++c) {
                   const double d = xi[c] - x[c][s * kLanes + l];
                   r2 += d * d;
                 }
-                least = std::min(least, r2);
+                of_row += r2 < reach2;
               }
+              neighbours_[row] += of_row;
+              near += of_row;
             }
-            if (least >= reach2) continue;
+            if (near == 0) continue;
             block.candidate.push_back(s);
             block.of_group.push_back(g);
             ++found[g];
@@ -218,6 +221,7 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
 void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, double reach) {
   const Index octets = rows.octets(), blocks = (octets + kOctetsPerBlock - 1) / kOctetsPerBlock;
   blocks_.resize(blocks);
+  neighbours_.assign(rows.slots(), 0);
   with_dim(rows.dim_, [&](auto d) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (Index b = 0; b < blocks; ++b) {

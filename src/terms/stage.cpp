@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kSurfaceFull = 0.86, kSurfaceNone = 0.94;    // Shepard sum
 constexpr double kExposureFull = 0.60, kExposureNone = 0.35;  // colour gradient
-/// Fewest neighbours of a particle that takes part in the pressure field.
-constexpr Index kFewestNeighbours[2] = {6, 14};
 
 }  // namespace
 
@@ -68,7 +66,7 @@ void compute_surface(Stage& s) {
         s.fill[i] = (sum[0] + self) / lattice.shepard;
         if (!s.constants->free_surface) return;
         s.diagonal[i] = sum[1] / lattice.laplacian;
-        s.loose[i] = s.patch->liquid[i] && count < kFewestNeighbours[D - 2];
+        s.loose[i] = s.patch->liquid[i] && count < fewest_neighbours(D);
         double norm = 0;
         for (int c = 0; c < D; ++c) {
           s.grad_c[c][i] = sum[2 + c];

@@ -155,7 +155,7 @@ void acoustic_gather(benchmark::State& state) {
 void acoustic_pairs(benchmark::State& state) {
   Ball& b = ball(state);
   terms::AcousticPass pass;
-  for (auto _ : state) pass.find_pairs(b.stage, 0);
+  for (auto _ : state) pass.find_pairs(b.stage, 0, {});
   count(state, b);
   sph::ClusterSet set;
   sph::ClusterList list;

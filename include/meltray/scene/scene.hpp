@@ -173,6 +173,11 @@ struct Scene {
   std::optional<Laser> laser;
   Time time;
   Output output;
+
+  /// Some term changes enthalpies.
+  bool exchanges_heat() const {
+    return terms.conduction || terms.evaporation || terms.radiation || laser.has_value();
+  }
 };
 
 }  // namespace meltray::scene

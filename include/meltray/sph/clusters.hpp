@@ -57,11 +57,15 @@ class ClusterSet {
 /// For each group of rows the octets of which some particle is within reach of some row.
 class ClusterList {
  public:
-  /// Throws nothing; pairs closer than `reach` [m] are all in the list.
+  /// Pairs closer than `reach` [m] are all in the list.
   void build(const ClusterSet& rows, const ClusterSet& sources, double reach);
+  /// Particles within reach of each slot of the rows when the list was built, itself included.
+  const std::vector<Index>& neighbours() const { return neighbours_; }
   const Index* start() const { return start_.data(); }
   const Index* octets() const { return octet_.data(); }
-  std::size_t bytes() const { return (start_.capacity() + octet_.capacity()) * sizeof(Index); }
+  std::size_t bytes() const {
+    return (start_.capacity() + octet_.capacity() + neighbours_.capacity()) * sizeof(Index);
+  }
 
  private:
   /// Consecutive octets of rows, handled by one task, and the lists of their groups, one after the other.
@@ -71,7 +75,7 @@ class ClusterList {
   template <int D>
   void search(const ClusterSet& rows, const ClusterSet& sources, Index octet, double reach, Block& block);
 
-  std::vector<Index> start_{0}, octet_;
+  std::vector<Index> start_{0}, octet_, neighbours_;
   std::vector<Block> blocks_;
 };
 

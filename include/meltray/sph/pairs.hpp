@@ -51,6 +51,8 @@ class PairList {
   Index rows() const { return static_cast<Index>(start_.size()) - 1; }
   Index begin(Index i) const { return start_[i]; }
   Index end(Index i) const { return start_[i + 1]; }
+  /// Neighbours of row i; 0 where there is no such row.
+  Index count(Index i) const { return i < rows() ? end(i) - begin(i) : 0; }
   Index neighbour(Index k) const { return j_[k]; }
   const Index* neighbours() const { return j_.data(); }
   /// 1 for solid particles with a liquid neighbour: the walls of the melt.

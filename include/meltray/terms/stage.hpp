@@ -69,6 +69,11 @@ struct Stage {
   double area_of_spacing() const;
 };
 
+/// Fewest neighbours of a particle that takes part in the pressure field.
+constexpr Index fewest_neighbours(int dim) {
+  return dim == 2 ? 6 : 14;
+}
+
 /// Sizes the arrays for a newly selected patch and fills volume, moving and the index lists.
 /// `heat` must be set before by the caller for all particles of the patch.
 void prepare_stage(Stage& stage);

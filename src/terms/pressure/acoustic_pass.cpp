@@ -94,7 +94,7 @@ AcousticArguments AcousticPass::arguments(const Stage& s) {
   a.wall_melt = {wall_melt_.start(), wall_melt_.octets()};
   a.smoothing = k.smoothing;
   for (int c = 0; c < k.dim; ++c) {
-    a.period[c] = s.pairs->period()[c];
+    a.period[c] = period_[c];
     a.inverse_period[c] = a.period[c] > 0 ? 1 / a.period[c] : 0;
   }
   a.continuity = 1 / k.lattice.second_moment;
@@ -119,20 +119,34 @@ AcousticArguments AcousticPass::arguments(const Stage& s) {
   return a;
 }
 
-void AcousticPass::find_pairs(const Stage& s, double skin) {
+void AcousticPass::find_pairs(Stage& s, double skin, const std::array<double, 3>& period) {
   const SceneConstants& k = *s.constants;
+  const bool listed = s.pairs->rows() == s.size();
+  period_ = period;
   kind_.assign(s.size(), kOther);
   for (Index i = 0; i < s.size(); ++i)
     if (s.patch->liquid[i])
       kind_[i] = kMelt;
-    else if (s.pairs->next_to_melt()[i])
+    else if (!listed || s.pairs->next_to_melt()[i])
       kind_[i] = kWall;
-  melt_.set.sort(*s.patch, kind_, kMelt, k.spacing, s.pairs->period());
-  wall_.set.sort(*s.patch, kind_, kWall, k.spacing, s.pairs->period());
+  melt_.set.sort(*s.patch, kind_, kMelt, k.spacing, period);
+  wall_.set.sort(*s.patch, kind_, kWall, k.spacing, period);
   const double reach = 2 * k.smoothing + skin;
+  if (!listed) {  // most walls are far from the melt
+    wall_melt_.build(wall_.set, melt_.set, reach);
+    for_particles(wall_.set, [&](Index slot, Index i) {
+      if (wall_melt_.neighbours()[slot] == 0) kind_[i] = kOther;
+    });
+    wall_.set.sort(*s.patch, kind_, kWall, k.spacing, period);
+  }
   melt_melt_.build(melt_.set, melt_.set, reach);
   melt_wall_.build(melt_.set, wall_.set, reach);
   wall_melt_.build(wall_.set, melt_.set, reach);
+  if (!listed)
+    for_particles(melt_.set, [&](Index slot, Index i) {
+      const Index count = melt_melt_.neighbours()[slot] + melt_wall_.neighbours()[slot] - 1;
+      s.loose[i] = k.free_surface && count < fewest_neighbours(k.dim);
+    });
   density_rate_.resize(melt_.set.slots());
   for (int c = 0; c < k.dim; ++c)
     for (auto* field : {&pressure_force_[c], &viscous_force_[c], &melt_.gradient[c]})

@@ -151,7 +151,7 @@ struct StageSetup {
 
   /// Pairs, pressures and sums of a weakly compressible scene at the patch's densities.
   void evaluate(terms::AcousticPass& pass) {
-    pass.find_pairs(stage, 0);
+    pass.find_pairs(stage, 0, pairs.period());
     pass.state.update(stage);
     pass.gather(stage);
     pass.evaluate(stage);

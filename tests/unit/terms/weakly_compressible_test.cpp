@@ -258,7 +258,7 @@ TEST_CASE("pressure of walls continues that of a tank at rest") {
   const auto pressure = [&](Index i) { return 7000 * g * (1 - b.patch.x[1][i]); };
   for (Index i = 0; i < b.patch.size(); ++i) b.patch.density[i] = 7000 + pressure(i) / (c * c);
   AcousticPass pass = pass_of(eos);
-  pass.find_pairs(b.stage, 0);
+  pass.find_pairs(b.stage, 0, {});
   eos.update(b.stage);
   pass.gather(b.stage);
   int walls = 0;

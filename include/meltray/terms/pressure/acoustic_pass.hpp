@@ -21,9 +21,10 @@ class AcousticPass {
   PressureForce force;
   ArtificialViscosity artificial;
 
-  /// Which particles are pairs, once the stage's list has been built: those closer than the support and
-  /// `skin` [m].
-  void find_pairs(const Stage& stage, double skin);
+  /// Which particles are pairs: those closer than the support and `skin` [m], in a box of these periods [m].
+  /// Where the stage's own list has been built, its walls of the melt are the only ones that count; else all
+  /// resting particles do, and this is what tells which particles are loose.
+  void find_pairs(Stage& stage, double skin, const std::array<double, 3>& period);
   /// Takes positions, velocities and what `state` has made of the densities, for evaluate(), and gives the
   /// walls their pressures.
   void gather(Stage& stage);
@@ -48,6 +49,7 @@ class AcousticPass {
   AcousticArguments arguments(const Stage& stage);
   void renormalise_gradients(const Stage& stage);
 
+  std::array<double, 3> period_{};
   std::vector<std::uint8_t> kind_;
   std::vector<double> drag_;  ///< per particle of the patch [kg]
   Fields melt_, wall_;
