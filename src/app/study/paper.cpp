@@ -25,6 +25,9 @@ constexpr double kSeedJitter = 0.05;
 /// Of Young's modulus in the row with elastic solid: sound in it is then as slow as in the melt.
 constexpr double kModulusScale = 1e-4;
 constexpr const char* kIsph = "isph";
+/// How weakly compressible welds step, as in cases/wcsph_steps.toml.
+constexpr const char* kSoundSteps[] = {"time.method=multirate", "time.fixed_step_s=1e-6",
+                                       "time.cfl_acoustic=0.7"};
 
 /// One weld of the matrix.
 struct Weld : ListedRun {
@@ -50,6 +53,7 @@ std::vector<Weld> matrix(const PaperArguments& a) {
             throw UsageError(fmt::format("study paper: {} at {} Hz: there is no {}", metal, frequency,
                                          w.case_file.string()));
           w.set.push_back("model=" + model);
+          if (model != kIsph) w.set.insert(w.set.end(), std::begin(kSoundSteps), std::end(kSoundSteps));
           if (model == "wcsph")  // steps of the full modulus would take weeks
             w.set.push_back(fmt::format("flow.elastic_modulus_scale={}", kModulusScale));
           if (seed > 0)
