@@ -84,6 +84,7 @@ class Model : public OdeProblem {
   std::size_t crossings_begin() const;
   bool flows() const { return scene_.terms.pressure; }
   bool weakly_compressible() const { return acoustic_.has_value(); }
+  std::size_t acoustic_bytes() const { return acoustic_ ? acoustic_->bytes() : 0; }
   bool has_elastic_solid() const { return elastic_.has_value(); }
   /// One projection after each step, with all geometry frozen over the step.
   bool projects_steps() const {

@@ -133,6 +133,7 @@ std::vector<std::pair<std::string, std::size_t>> Simulation::memory() const {
   const int stresses = p.stress[0].empty() ? 0 : symmetric_count(p.dim);
   return {{"particles", p.size() * (2 * p.dim + 5 + stresses) * sizeof(double) + 3 * p.size()},
           {"pair lists", impl_->model.pairs.bytes()},
+          {"acoustic pass", impl_->model.acoustic_bytes()},
           {"bulk conduction", impl_->bulk.bytes()},
           {"state vectors", impl_->y.capacity() * sizeof(double) * 20}};
 }

@@ -2,51 +2,85 @@
 # SPDX-License-Identifier: MIT
 """Whole scenes at fixed work: what each feature of a weld costs, growth with particles, one thread and two.
 
-usage: scenes.py BINARY [--json FILE] [--quick]
+usage: scenes.py BINARY [--json FILE] [--quick] [--only features|rows|threads|growth] [--pool RUN]
+
+  features  a developed pool (the 2 kW weld at 3 ms, or the run --pool) goes on with features taken away, one at a
+            time
+  rows      the same weld from its start by the rows of Table 1, and in two dimensions
+  threads   the weld and a dam break with one thread and two
+  growth    a dam break with 24,000 to 2 million particles of water, 82 neighbours, two evaluations a step
 
 Every scene runs in a process of its own, for a fixed simulated time; numbers are ratios within one run of this
-program. Wall times on a machine that does other work mean little; `microseconds per liquid particle and step` and
+program. Wall times on a machine that does other work mean little; microseconds per liquid particle and step and
 the shares of the parts are steadier.
 """
 import argparse
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+HERE = pathlib.Path(__file__).resolve().parent
+WELD = HERE.parents[1] / "cases" / "weld_iron_2kw.toml"
+DAM_BREAK = HERE / "dam_break.toml"
+DEVELOPED = 3e-3  # [s]
 
-DROP_STEP = 1e-8  # short, so that every spacing takes the same steps [s]
-
-# name -> what is taken away from the weld
-WELD = {
-    "weld": [],
-    "no marangoni": ["terms.marangoni=false"],
-    "no wetting": ["terms.wetting=false"],
-    "no interface viscosity": ["terms.interface_viscosity=false"],
-    "no evaporation": ["terms.evaporation=false", "terms.radiation=false"],
-    "no shifting": ["flow.shifting=0"],
-    "projection in every stage": ["splitting.projection=stage"],
+# name -> settings, and the part whose share of the whole weld is compared with what is saved
+FEATURES = {
+    "weld": ([], None),
+    "no marangoni": (["terms.marangoni=false"], "forces"),
+    "no wetting": (["terms.wetting=false"], None),
+    "no interface viscosity": (["terms.interface_viscosity=false"], "viscosity"),
+    "no evaporation": (["terms.evaporation=false", "terms.radiation=false"], None),
+    "no shifting": (["flow.shifting=0"], None),
+    "light not traced again": (["laser.retrace_interval_s=1", "laser.retrace_motion=10"], "laser"),
+    "500 rays": (["laser.rays=500"], None),
+    "projection in every stage": (["splitting.projection=stage"], None),
 }
+SOUND = ["time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=0.7", "flow.sound_speed_m_s=140"]
+ROWS = {
+    "isph": [],
+    "wcsph_reduced": ["model=wcsph_reduced", *SOUND, "flow.artificial_viscosity=0.35"],
+    "wcsph_reduced_interface": ["model=wcsph_reduced_interface", *SOUND],
+    "wcsph, elastic": ["model=wcsph", *SOUND, "flow.artificial_viscosity=0.35", "flow.elastic_modulus_scale=1e-4"],
+    "wcsph, fixed solid": ["model=wcsph", *SOUND, "flow.artificial_viscosity=0.35", "flow.solid=fixed"],
+}
+# Particles of water -> spacing over the height of the column
+SIZES = {"24k": 1 / 29, "163k": 1 / 54.5, "0.5M": 1 / 80, "2M": 1 / 126}
+STEPS = 60  # of a dam break, about
 
 
-def run(binary, case, until, settings, threads):
-    """The summary of one run."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder) / "run"
-        command = [binary, "run", case, "--out", out, "--until", str(until), "--threads", str(threads), "--quiet"]
-        for setting in settings:
-            command += ["--set", setting]
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            sys.exit(f"scenes.py: {' '.join(map(str, command))}: exit {done.returncode}\n{done.stderr}")
-        return json.loads((out / "summary.json").read_text())
+def call(binary, *arguments):
+    command = [str(a) for a in (binary, *arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"scenes.py: {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
+
+
+def sets(settings):
+    return [word for setting in settings for word in ("--set", setting)]
+
+
+def run(binary, case, out, until, settings, threads):
+    """The summary of a run from its start."""
+    call(binary, "run", case, "--out", out, "--until", until, "--threads", threads, "--quiet", *sets(settings))
+    return json.loads((out / "summary.json").read_text())
+
+
+def fork(binary, source, out, until, settings, threads):
+    """The summary of a run that goes on with other settings; steps are those of its own."""
+    before = json.loads((source / "summary.json").read_text())
+    call(binary, "resume", source, "--out", out, "--until", until, "--threads", threads, "--quiet", *sets(settings))
+    after = json.loads((out / "summary.json").read_text())
+    after["mean_liquid_particles"] = after["particles"]["liquid"]
+    after["steps"] -= before["steps"]
+    return after
 
 
 def row(name, summary, threads):
-    steps = summary["steps"]
-    liquid = summary["mean_liquid_particles"]
+    steps, liquid = summary["steps"], summary["mean_liquid_particles"]
     wall = summary["session_wall_seconds"] - summary["time_by_part"]["observe"]["seconds"]
     return {
         "name": name,
@@ -56,9 +90,11 @@ def row(name, summary, threads):
         "milliseconds_per_step": 1e3 * wall / steps,
         "mean_liquid": liquid,
         "microseconds_per_liquid_particle_step": 1e6 * wall / steps / max(liquid, 1),
+        "million_particle_steps_per_second": 1e-6 * steps * liquid / wall,
         "peak_memory_mb": summary["peak_memory_bytes"] / 1e6,
+        "bytes_per_liquid_particle": summary["peak_memory_bytes"] / max(liquid, 1),
         "shares": {part: round(value["share"], 3) for part, value in summary["time_by_part"].items()
-                   if value["share"] > 0.005},
+                   if value["share"] > 0.005 and part != "observe"},
     }
 
 
@@ -71,33 +107,75 @@ def show(title, rows):
               flush=True)
 
 
+def features(binary, folder, quick, threads, pool=None):
+    base = pool or folder / "developed"
+    if not pool:
+        run(binary, WELD, base, DEVELOPED, ["output.snapshot_interval_s=0"], threads)
+    until = json.loads((base / "summary.json").read_text())["time_s"] + (5e-5 if quick else 3e-4)
+    rows = [row(name, fork(binary, base, folder / name.replace(" ", "_"), until, settings, threads), threads)
+            for name, (settings, _) in FEATURES.items()]
+    show("a developed pool with features taken away", rows)
+    whole = rows[0]
+    print("shares of the whole weld: " + ", ".join(f"{k} {100 * v:.0f} %" for k, v in whole["shares"].items()))
+    for r, (_, part) in zip(rows, FEATURES.values()):
+        if part:
+            saved = 1 - r["milliseconds_per_step"] / whole["milliseconds_per_step"]
+            print(f"{r['name']}: saves {100 * saved:.0f} % of a step; the share of `{part}` is "
+                  f"{100 * whole['shares'].get(part, 0):.0f} %")
+    return rows
+
+
+def rows_of_table_1(binary, folder, quick, threads):
+    until = 1e-4 if quick else 1e-3
+    rows = [row(name, run(binary, WELD, folder / f"row{k}", until, settings, threads), threads)
+            for k, (name, settings) in enumerate(ROWS.items())]
+    show(f"the first {until * 1e3:g} ms of the weld by rows of Table 1", rows)
+    return rows
+
+
+def dam_break(binary, out, size, threads):
+    spacing = SIZES[size]
+    step = 0.25 * 1.35 * spacing / (20 * 1.03)
+    summary = run(binary, DAM_BREAK, out, STEPS * step,
+                  [f"domain.spacing_m={spacing}", f"output.interval_s={STEPS * step}"], threads)
+    return row(f"dam break, {size}", summary, threads)
+
+
+def growth(binary, folder, quick, threads):
+    rows = [dam_break(binary, folder / f"growth{size}", size, threads) for size in list(SIZES)[:2 if quick else 4]]
+    show("growth with particles: a dam break", rows)
+    for r in rows:
+        print(f"{r['name']}: {r['million_particle_steps_per_second']:.2f} million particle-steps a second, "
+              f"{r['bytes_per_liquid_particle']:.0f} bytes a particle of water, its walls included")
+    return rows
+
+
+def one_and_more_threads(binary, folder, quick, threads):
+    until = 1e-4 if quick else 1e-3
+    rows = [row("weld", run(binary, WELD, folder / f"weld{n}", until, [], n), n) for n in (1, threads)]
+    rows += [dam_break(binary, folder / f"dam{n}", "24k", n) for n in (1, threads)]
+    show("threads", rows)
+    return rows
+
+
+GROUPS = {"features": features, "rows": rows_of_table_1, "threads": one_and_more_threads, "growth": growth}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("binary")
     parser.add_argument("--json")
     parser.add_argument("--quick", action="store_true", help="a tenth of the work")
+    parser.add_argument("--only", choices=GROUPS, help="one group of scenes")
+    parser.add_argument("--pool", type=pathlib.Path, help="a run with a developed pool")
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
-    weld_time = 1e-4 if arguments.quick else 1e-3
-    weld, drop = CASES / "quickstart.toml", CASES / "drop.toml"
     results = {}
-
-    rows = [row(name, run(arguments.binary, weld, weld_time, off, 2), 2) for name, off in WELD.items()]
-    results["features"] = rows
-    show(f"a weld of {weld_time * 1e3:g} ms with features taken away", rows)
-    shares = rows[0]["shares"]
-    print("shares of the whole weld: " + ", ".join(f"{k} {100 * v:.0f} %" for k, v in shares.items()))
-
-    rows = [row(f"weld, {n} threads", run(arguments.binary, weld, weld_time, [], n), n) for n in (1, 2)]
-    results["threads"] = rows
-    show("threads", rows)
-
-    rows = []
-    for spacing in (2.5e-5, 1.25e-5) if arguments.quick else (2.5e-5, 1.25e-5, 6.25e-6):
-        settings = [f"domain.spacing_m={spacing}", f"time.max_step_s={DROP_STEP}"]
-        rows.append(row(f"drop, dx {spacing:g} m", run(arguments.binary, drop, 20 * DROP_STEP, settings, 2), 2))
-    results["growth"] = rows
-    show("growth with particles: 20 steps of a drop", rows)
-
+    with tempfile.TemporaryDirectory() as folder:
+        for name, group in GROUPS.items():
+            if arguments.only in (None, name):
+                more = {"pool": arguments.pool} if name == "features" else {}
+                results[name] = group(arguments.binary, pathlib.Path(folder), arguments.quick, arguments.threads, **more)
     if arguments.json:
         pathlib.Path(arguments.json).write_text(json.dumps(results, indent=1) + "\n")
 

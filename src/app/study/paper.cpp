@@ -15,6 +15,7 @@
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/history.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/presets.hpp"
 
 namespace meltray::app {
 namespace fs = std::filesystem;
@@ -25,9 +26,12 @@ constexpr double kSeedJitter = 0.05;
 /// Of Young's modulus in the row with elastic solid: sound in it is then as slow as in the melt.
 constexpr double kModulusScale = 1e-4;
 constexpr const char* kIsph = "isph";
-/// How weakly compressible welds step, as in cases/wcsph_steps.toml.
-constexpr const char* kSoundSteps[] = {"time.method=multirate", "time.fixed_step_s=1e-6",
-                                       "time.cfl_acoustic=0.7"};
+/// What weakly compressible welds of a metal have in common, as in cases/iron_wcsph.toml and
+/// cases/aluminium_wcsph.toml.
+std::vector<std::string> of_weakly_compressible(const std::string& metal) {
+  return {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=0.7",
+          metal == "iron" ? "flow.sound_speed_m_s=140" : "flow.sound_speed_m_s=245"};
+}
 
 /// One weld of the matrix.
 struct Weld : ListedRun {
@@ -53,7 +57,11 @@ std::vector<Weld> matrix(const PaperArguments& a) {
             throw UsageError(fmt::format("study paper: {} at {} Hz: there is no {}", metal, frequency,
                                          w.case_file.string()));
           w.set.push_back("model=" + model);
-          if (model != kIsph) w.set.insert(w.set.end(), std::begin(kSoundSteps), std::end(kSoundSteps));
+          if (model != kIsph) {
+            const auto more = of_weakly_compressible(metal);
+            w.set.insert(w.set.end(), more.begin(), more.end());
+            if (scene::preset_of(model).artificial_viscosity) w.set.push_back("flow.artificial_viscosity=0.35");
+          }
           if (model == "wcsph")  // steps of the full modulus would take weeks
             w.set.push_back(fmt::format("flow.elastic_modulus_scale={}", kModulusScale));
           if (seed > 0)
