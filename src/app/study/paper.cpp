@@ -60,7 +60,8 @@ std::vector<Weld> matrix(const PaperArguments& a) {
           if (model != kIsph) {
             const auto more = of_weakly_compressible(metal);
             w.set.insert(w.set.end(), more.begin(), more.end());
-            if (scene::preset_of(model).artificial_viscosity) w.set.push_back("flow.artificial_viscosity=0.35");
+            if (scene::preset_of(model).artificial_viscosity)
+              w.set.push_back("flow.artificial_viscosity=0.35");
           }
           if (model == "wcsph")  // steps of the full modulus would take weeks
             w.set.push_back(fmt::format("flow.elastic_modulus_scale={}", kModulusScale));
