@@ -223,6 +223,22 @@ class NumericalFailures(Scratch):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertLess(summary(fork)["budgets"]["energy"]["relative_error"], 1e-10)
 
+    def test_fork_to_another_method(self):
+        """Partitions of the method of before do not bind one that has none."""
+        folder = self.folder / "run"
+        done = meltray("run", WELD, "--out", folder, "--quiet", "--set", "model=wcsph_reduced", "--until", "2e-5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        multirate = self.folder / "multirate"
+        done = meltray("resume", folder, "--quiet", "--out", multirate, "--until", "3e-5", "--set",
+                       "time.method=multirate", "--set", "time.order=3", "--set", "time.fixed_step_s=1e-6")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(summary(multirate)["limiter"]["fixed"], 10)
+        back = self.folder / "back"
+        done = meltray("resume", multirate, "--quiet", "--out", back, "--until", "3.2e-5", "--set",
+                       "time.method=imex", "--set", "time.order=2", "--set", "time.fixed_step_s=0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(summary(back)["limiter"]["acoustic"], summary(folder)["limiter"]["acoustic"])
+
     @unittest.expectedFailure
     def test_unstable_conduction(self):
         """Explicit conduction far beyond its stability limit: the message names a particle and the term."""
