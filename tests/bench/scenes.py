@@ -39,7 +39,7 @@ FEATURES = {
     "500 rays": (["laser.rays=500"], None),
     "projection in every stage": (["splitting.projection=stage"], None),
 }
-SOUND = ["time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=0.7", "flow.sound_speed_m_s=140"]
+SOUND = ["time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1", "flow.sound_speed_m_s=140"]
 ROWS = {
     "isph": [],
     "wcsph_reduced": ["model=wcsph_reduced", *SOUND, "flow.artificial_viscosity=0.35"],

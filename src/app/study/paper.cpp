@@ -29,7 +29,7 @@ constexpr const char* kIsph = "isph";
 /// What weakly compressible welds of a metal have in common, as in cases/iron_wcsph.toml and
 /// cases/aluminium_wcsph.toml.
 std::vector<std::string> of_weakly_compressible(const std::string& metal) {
-  return {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=0.7",
+  return {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1",
           metal == "iron" ? "flow.sound_speed_m_s=140" : "flow.sound_speed_m_s=245"};
 }
 

@@ -186,8 +186,9 @@ struct Terms {
 /// A piece of an octet of neighbours: continuity, density diffusion (melt only), pressure and artificial
 /// viscosity.
 template <class T, int D, bool Melt, class Kernel>
-inline void add_piece(const AcousticArguments& a, const AcousticFields& field, const Kernel& kernel, Index j,
-                      const Row<D> (&row)[kRows], Sums<D> (&sums)[kRows]) {
+[[gnu::always_inline]] inline void add_piece(const AcousticArguments& a, const AcousticFields& field,
+                                             const Kernel& kernel, Index j, const Row<D> (&row)[kRows],
+                                             Sums<D> (&sums)[kRows]) {
   const double softening = 0.01 * a.smoothing * a.smoothing;
   const Vector<D> xj = load<D>(field.x, j), vj = load<D>(field.v, j);
   const Lanes volume = load(field.volume, j), pj = load(field.pressure, j);

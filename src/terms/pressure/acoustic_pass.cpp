@@ -190,7 +190,11 @@ void AcousticPass::add_density_rate(const Stage& s, double* density_rate) const 
   const double relax = state.sound_speed / s.constants->smoothing;
   for_particles(melt_.set, [&](Index slot, Index i) {
     density_rate[i] += density_rate_[slot];
-    if (s.loose[i]) density_rate[i] -= s.excess[i] * relax;
+    const double thinnest = -state.tear * (s.patch->density[i] - s.excess[i]);
+    if (s.loose[i])
+      density_rate[i] -= s.excess[i] * relax;
+    else if (s.excess[i] < thinnest)
+      density_rate[i] -= (s.excess[i] - thinnest) * relax;
   });
 }
 

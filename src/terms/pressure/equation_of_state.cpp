@@ -9,8 +9,8 @@ double EquationOfState::reference_density(const SceneConstants& constants, doubl
   return expansion ? constants.material.density_of_t(temperature) : constants.density;
 }
 
-double EquationOfState::pressure(double excess) const {
-  const double p = sound_speed * sound_speed * excess;
+double EquationOfState::pressure(double excess, double reference) const {
+  const double p = sound_speed * sound_speed * std::max(excess, -tear * reference);
   return tension == Tension::none ? std::max(p, 0.0) : p;
 }
 
@@ -19,8 +19,9 @@ void EquationOfState::update(Stage& s) const {
   parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
     s.volume[i] = s.patch->mass[i] / s.patch->density[i];
-    s.excess[i] = s.patch->density[i] - reference_density(*s.constants, s.temperature[i]);
-    s.patch->pressure[i] = pressure(s.excess[i]);
+    const double reference = reference_density(*s.constants, s.temperature[i]);
+    s.excess[i] = s.patch->density[i] - reference;
+    s.patch->pressure[i] = pressure(s.excess[i], reference);
   });
 }
 

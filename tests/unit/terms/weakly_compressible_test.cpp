@@ -86,11 +86,12 @@ TEST_CASE("equation of state, Eqs. (5) and (7)") {
   k.material = expanding_metal();
   const EquationOfState plain{kSound, false, Tension::full};
   CHECK(plain.reference_density(k, 2810) == 7000);
-  CHECK(plain.pressure(10) == Approx(1600 * 10));
-  CHECK(plain.pressure(-10) == Approx(-1600 * 10));
+  CHECK(plain.pressure(10, 7000) == Approx(1600 * 10));
+  CHECK(plain.pressure(-10, 7000) == Approx(-1600 * 10));
+  CHECK(plain.pressure(-1000, 7000) == Approx(-1600 * plain.tear * 7000));
   const EquationOfState warm{kSound, true, Tension::none};
   CHECK(warm.reference_density(k, 2810) == Approx(6000));
-  CHECK(warm.pressure(-10) == 0);
+  CHECK(warm.pressure(-10, 6000) == 0);
 }
 
 TEST_CASE("hot melt of density rho_0(T) has no pressure") {
@@ -114,6 +115,19 @@ TEST_CASE("continuity, Eq. (2): uniform expansion thins, rotation does not") {
     if (b.deep(i, 0.3)) CHECK(expanding[i] == Approx(-3.0 * dim * 7000).epsilon(1e-12));
   b.set_velocity([](const Vec3& x) { return Vec3(-x[1], x[0], 0); });
   for (double r : b.density_rate(pass)) CHECK(std::abs(r) < 1e-11 * 7000);
+}
+
+TEST_CASE("the density of torn melt returns, that of thin melt does not") {
+  Block b(2);
+  const EquationOfState eos{kSound, false, Tension::full};
+  const double share = GENERATE(0.9, 2.0);  // of what it can be thinner by
+  b.set_excess(eos, [&](const Vec3&) { return -share * eos.tear * 7000; });
+  b.update();
+  AcousticPass pass = pass_of(eos);
+  const auto rate = b.density_rate(pass);
+  const double expected = share > 1 ? (share - 1) * eos.tear * 7000 * kSound / b.constants.smoothing : 0.0;
+  for (Index i = 0; i < b.patch.size(); ++i)
+    if (!b.stage.loose[i]) CHECK(rate[i] == Approx(expected));
 }
 
 TEST_CASE("pressure force: a linear pressure gives -grad p / rho, any pressure conserves momentum") {

@@ -27,9 +27,14 @@ struct EquationOfState {
   bool expansion = false;  ///< rho_0 follows the density of the melt over temperature
   Tension tension = Tension::full;
   double gravity = 0;  ///< downwards [m/s^2], for the pressure behind walls
+  /// Share of rho_0 by which melt can be thinner than it. A particle beyond has been torn off: its tension
+  /// grows no further, and its density returns like that of one that flies alone. Without a bound a single
+  /// particle of spray, thinned to a quarter, was flung away by 1e8 Pa of tension.
+  double tear = 0.05;
 
   double reference_density(const SceneConstants& constants, double temperature) const;
-  double pressure(double excess) const;
+  /// Of an excess density rho - rho_0 over a reference density rho_0 [kg/m^3].
+  double pressure(double excess, double reference) const;
   /// Volumes, excess densities rho - rho_0(T) and pressures of moving particles from density and temperature.
   void update(Stage& stage) const;
 };
