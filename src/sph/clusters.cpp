@@ -134,7 +134,6 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
   const double reach2 = reach * reach;
   const double* const x[3] = {sources.position_[0].data(), sources.position_[1].data(),
                               sources.position_[2].data()};
-  std::array<Index, kGroups> found{};
   block.candidate.clear();
   block.of_group.clear();
 
@@ -149,6 +148,12 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
       box.max[c] += shift[c] + reach;
       if (box.min[c] > sources.all_.max[c] || box.max[c] < sources.all_.min[c]) return;
     }
+    double xi[D][kLanes];
+    for (int c = 0; c < D; ++c)
+      for (Index row = 0; row < kLanes; ++row) {
+        const bool empty = rows.particle_[octet * kLanes + row] < 0;  // as far from empty slots of sources
+        xi[c][row] = empty ? -kNowhere : rows.position_[c][octet * kLanes + row] + shift[c];
+      }
     Index low[2] = {0, 0}, high[2] = {0, 0};
     for (int c = 0; c < up; ++c) {
       const auto column = [&](double at) {
@@ -171,30 +176,24 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
             apart = apart || source->min[c] > box.max[c] || source->max[c] < box.min[c];
           if (apart) continue;
           const auto s = static_cast<Index>(source - sources.box_.begin());
-          for (Index g = 0; g < kGroups; ++g) {
-            Index near = 0;
-            for (Index row = octet * kLanes + g * kGroupRows; row < octet * kLanes + (g + 1) * kGroupRows;
-                 ++row) {
-              double xi[D];
-              for (int c = 0; c < D; ++c) xi[c] = rows.position_[c][row] + shift[c];
-              if (rows.particle_[row] < 0) continue;
-              Index of_row = 0;
-#pragma omp simd reduction(+ : of_row)
-              for (Index l = 0; l < kLanes; ++l) {
-                double r2 = 0;
-                for (int c = 0; c < D; ++c) {
-                  const double d = xi[c] - x[c][s * kLanes + l];
-                  r2 += d * d;
-                }
-                of_row += r2 < reach2;
-              }
-              neighbours_[row] += of_row;
-              near += of_row;
+          // All eight rows at once: no sum across a register.
+          double near[kLanes] = {};
+          for (Index l = 0; l < kLanes; ++l) {
+            double xj[D];
+            for (int c = 0; c < D; ++c) xj[c] = x[c][s * kLanes + l];
+#pragma omp simd
+            for (Index row = 0; row < kLanes; ++row) {
+              double r2 = 0;
+              for (int c = 0; c < D; ++c) r2 += (xi[c][row] - xj[c]) * (xi[c][row] - xj[c]);
+              near[row] += r2 < reach2 ? 1.0 : 0.0;
             }
-            if (near == 0) continue;
+          }
+          for (Index row = 0; row < kLanes; ++row)
+            neighbours_[octet * kLanes + row] += static_cast<Index>(near[row]);
+          for (Index g = 0; g < kGroups; ++g) {
+            if (near[g * kGroupRows] + near[g * kGroupRows + 1] == 0) continue;
             block.candidate.push_back(s);
             block.of_group.push_back(g);
-            ++found[g];
           }
         }
       }
