@@ -6,7 +6,8 @@ Usage: plot_paper.py FOLDER    (with paper.csv and a run folder for each of its 
 
 depth.png: capillary depth over time, a panel for each metal and frequency, a line for each model; period.png: depth
 and absorbed power averaged over the periods after the first; ratio.png: amplitude of the depth over that of the power
-against the frequency, by both definitions.
+against the frequency, by both definitions of the amplitude, for the depth of the void and along the beam axis: a void
+that closes at its mouth keeps its depth while the beam no longer reaches its bottom.
 """
 
 import csv
@@ -70,35 +71,47 @@ def main():
             continue
         bins = np.linspace(0, 1, 26)
         place = np.digitize(phase[late] % 1, bins) - 1
-        for name, scale, look in (("capillary_depth_m", 1e3, "-"), ("absorbed_power_w", 1e-3, "--")):
+        for name, scale, look in (("capillary_depth_m", 1e3, "-"), ("axis_depth_m", 1e3, ":"),
+                                  ("absorbed_power_w", 1e-3, "--")):
             mean = [scale * h[name][late][place == k].mean() if (place == k).any() else np.nan for k in range(25)]
             axes[(r["metal"], f)].plot((bins[1:] + bins[:-1]) / 2, mean, look, color=colours[r["model"]], lw=1,
                                        label=r["model"] if look == "-" else None)
     for (metal, f), ax in axes.items():
-        ax.set(title=f"{metal}, {f} Hz: depth [mm], dashed: absorbed power [kW]", xlabel="phase of the power")
+        ax.set(title=f"{metal}, {f} Hz", xlabel="phase of the power")
         if ax.lines:
             ax.legend()
+    axes[keys[0]].set_ylabel("depth of void, along axis (dots) [mm],\nabsorbed power (dashes) [kW]")
     figure.savefig(folder / "period.png")
 
-    figure, ax = plt.subplots(figsize=(5, 3.5), layout="constrained")
-    for metal in sorted({r["metal"] for r in rows}):
-        for model in models:
-            some = sorted((r for r in rows if r["metal"] == metal and r["model"] == model and r["periods"] != "0"),
-                          key=lambda r: int(r["f_hz"]))
-            if not some:
-                continue
-            f = [int(r["f_hz"]) for r in some]
-            ax.errorbar(f, numbers(some, "half_range_mm_per_kw"), yerr=numbers(some, "half_range_95"), fmt="o-",
-                        color=colours[model], mfc="none" if metal == "aluminium" else None, capsize=2, lw=1, ms=4,
-                        label=f"{metal}, {model}: half range")
-            ax.plot(f, numbers(some, "harmonic_mm_per_kw"), "s--", color=colours[model], lw=1, ms=3,
-                    mfc="none" if metal == "aluminium" else None, label=f"{metal}, {model}: first harmonic")
-    ax.set(xlabel="frequency [Hz]", ylabel="amplitude of depth / power [mm/kW]", xscale="log", yscale="log")
-    if ax.has_data():
-        ax.legend(fontsize=6)
+    figure, both = plt.subplots(1, 2, figsize=(8, 3.5), sharey=True, layout="constrained")
+    for ax, prefix, title in ((both[0], "", "depth of the void"), (both[1], "axis_", "depth along the beam axis")):
+        draw_ratios(ax, rows, models, colours, prefix)
+        ax.set(title=title, xlabel="frequency [Hz]", xscale="log", yscale="log")
+        ax.xaxis.set_major_formatter("{x:.0f}")
+        ax.xaxis.set_minor_formatter("")
+        if ax.has_data():
+            ax.legend(fontsize=6)
+            ax.set_xticks(sorted({int(r["f_hz"]) for r in rows}))
+    both[0].set_ylabel("amplitude of depth / power [mm/kW]")
     figure.savefig(folder / "ratio.png")
     for name in ("depth.png", "period.png", "ratio.png"):
         print(folder / name)
+
+
+def draw_ratios(ax, rows, models, colours, prefix):
+    """Half ranges with their intervals and first harmonics over the frequency, of one of the two depths."""
+    for metal in sorted({r["metal"] for r in rows}):
+        for model in models:
+            some = [r for r in rows if (r["metal"], r["model"]) == (metal, model) and r[prefix + "periods"] != "0"]
+            if not some:
+                continue
+            some.sort(key=lambda r: int(r["f_hz"]))
+            f = [int(r["f_hz"]) for r in some]
+            half, interval = numbers(some, prefix + "half_range_mm_per_kw"), numbers(some, prefix + "half_range_95")
+            ax.errorbar(f, half, yerr=interval, fmt="o-", color=colours[model], capsize=2, lw=1, ms=4,
+                        mfc="none" if metal == "aluminium" else None, label=f"{metal}, {model}: half range")
+            ax.plot(f, numbers(some, prefix + "harmonic_mm_per_kw"), "s--", color=colours[model], lw=1, ms=3,
+                    mfc="none" if metal == "aluminium" else None, label=f"{metal}, {model}: first harmonic")
 
 
 if __name__ == "__main__":
