@@ -15,13 +15,15 @@ constexpr const char* kHeader =
     "# `resolved` lets keys stand that have no effect here (marked below); remove it to have them reported.\n"
     "resolved = true\n";
 
-/// Keys of another shape of body, or of a face that a 2-D scene does not have, are left out: they have no
-/// value.
+/// Keys of another shape of body, of a face that a 2-D scene does not have, or of a property that the material
+/// does not have, are left out: they have no value.
 bool is_written(const Key& key, const Scene& scene, int index) {
   const Need* lacking = key.inactive(scene, index);
   const bool no_face =
       key.path.starts_with("faces.") && scene.domain.dimension == 2 && (index == 2 || index == 3);
-  return !no_face && !(lacking && key.is_required);
+  if (no_face || (lacking && key.is_required)) return false;
+  const Value value = key.get(scene, index);
+  return !value.is_number() || key.range.contains(value.number());
 }
 
 std::string line(const Key& key, const Scene& scene, int index) {

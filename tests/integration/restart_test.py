@@ -12,7 +12,7 @@ import unittest
 
 from meltray_runner import CASES, Scratch, main, meltray, run, snapshots, start, summary
 
-WELD = CASES / "tiny_weld.toml"
+WELD, DAM_BREAK = CASES / "tiny_weld.toml", CASES / "dam_break.toml"
 KILLS = int(os.environ.get("MELTRAY_KILLS", "5"))
 SEED = int(os.environ.get("MELTRAY_SEED", "1"))
 
@@ -69,6 +69,21 @@ class Restart(Scratch):
         two = run(WELD, self.folder / "two", "--threads", "2", "--until", "3.1e-5", *option)
         self.finish(two, "--threads", "2")
         self.assert_same_results(one, two, "elastic solid")
+
+    def test_fast_sound(self):
+        """Octets and the lists of a slow step that outlast it are made anew at a checkpoint in both runs."""
+        option = [o for s in ("model=wcsph_reduced", "time.method=multirate", "time.fixed_step_s=1e-6",
+                              "time.end_s=6e-5", "output.checkpoint_interval_s=2e-5") for o in ("--set", s)]
+        one = run(WELD, self.folder / "one", "--threads", "1", *option)
+        two = run(WELD, self.folder / "two", "--threads", "2", "--until", "3.1e-5", *option)
+        self.finish(two, "--threads", "2")
+        self.assert_same_results(one, two, "multirate")
+
+    def test_without_list_of_pairs(self):
+        one = run(DAM_BREAK, self.folder / "one", "--threads", "1")
+        two = run(DAM_BREAK, self.folder / "two", "--threads", "2", "--until", "0.6")
+        self.finish(two, "--threads", "2")
+        self.assert_same_results(one, two, "dam break")
 
     def test_kill(self):
         """kill -9 again and again, every second time in the middle of a write; threads change on the way."""
