@@ -15,8 +15,8 @@ constexpr const char* kHeader =
     "# `resolved` lets keys stand that have no effect here (marked below); remove it to have them reported.\n"
     "resolved = true\n";
 
-/// Keys of another shape of body, of a face that a 2-D scene does not have, or of a property that the material
-/// does not have, are left out: they have no value.
+/// Keys of another shape of body, of a face that a 2-D scene does not have, or of a property that the
+/// material does not have, are left out: they have no value.
 bool is_written(const Key& key, const Scene& scene, int index) {
   const Need* lacking = key.inactive(scene, index);
   const bool no_face =

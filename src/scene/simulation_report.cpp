@@ -243,7 +243,10 @@ std::vector<TermInfo> Simulation::terms() const {
           info("viscosity", s.terms.viscosity, side(p.viscosity, s.time.viscosity)),
           info("interface_viscosity", s.terms.interface_viscosity,
                side(p.interface_viscosity, s.time.interface_viscosity)),
-          info("pressure", s.terms.pressure, projected),
+          info("pressure", s.terms.pressure,
+               impl_->model.weakly_compressible()
+                   ? fmt::format("explicit, loops for {}", terms::AcousticPass::instructions())
+                   : projected),
           info("density_diffusion",
                impl_->model.weakly_compressible() && s.flow.density_diffusion != DensityDiffusion::none,
                "explicit"),
