@@ -35,6 +35,7 @@ terms::AcousticPass acoustic_pass(const Scene& scene) {
   pass.force.form = flow.pressure_gradient == PressureGradient::sum ? terms::GradientForm::sum
                                                                     : terms::GradientForm::difference;
   if (scene.terms.artificial_viscosity) pass.artificial.alpha = flow.artificial_viscosity;
+  terms::AcousticPass::instructions();  // a wrong MELTRAY_INSTRUCTIONS is refused at the start
   return pass;
 }
 
