@@ -18,6 +18,8 @@ constexpr double kPoolWidth = 2, kPoolLength = 4, kDepthPerPower = 1e-6;  // the
 /// and per step of a scene with a laser whatever its melt. Rough figures of the iron welds on two cores,
 /// where the mean step was half the shortest limit, since spatter and error control shorten it.
 constexpr double kSecondsPerParticleStep = 4e-6, kSecondsPerWeldParticleStep = 1.4e-5;
+/// The same of a weakly compressible scene without a laser: two passes over the octets.
+constexpr double kSecondsPerSoundParticleStep = 1.5e-6;
 constexpr double kSecondsPerLaserStep = 1.5e-2, kShareOfLimit = 0.5;
 
 /// Liquid particles to expect: those at the start, or a pool of a stated size where a laser melts solid.
@@ -39,7 +41,9 @@ void print_run_time(const Simulation& simulation, double step) {
   heading("run time (a rough estimate)");
   const Scene& s = simulation.scene();
   const double fixed = s.time.integrator.fixed_step,
-               cost = s.laser ? kSecondsPerWeldParticleStep : kSecondsPerParticleStep;
+               flow = s.flow.solver == scene::FlowSolver::wcsph ? kSecondsPerSoundParticleStep
+                                                                : kSecondsPerParticleStep,
+               cost = s.laser ? kSecondsPerWeldParticleStep : flow;
   double dt = step > 0 ? std::min(step, s.time.integrator.max_step) : s.time.integrator.max_step;
   if (s.laser) dt *= kShareOfLimit;
   if (fixed > 0) dt = fixed;
