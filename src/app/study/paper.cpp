@@ -28,9 +28,13 @@ constexpr double kModulusScale = 1e-4;
 constexpr const char* kIsph = "isph";
 /// What weakly compressible welds of a metal have in common, as in cases/iron_wcsph.toml and
 /// cases/aluminium_wcsph.toml.
-std::vector<std::string> of_weakly_compressible(const std::string& metal) {
-  return {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1",
-          metal == "iron" ? "flow.sound_speed_m_s=140" : "flow.sound_speed_m_s=245"};
+std::vector<std::string> of_weakly_compressible(const std::string& metal, const std::string& model) {
+  const bool iron = metal == "iron";
+  std::vector<std::string> set = {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1",
+                                  iron ? "flow.sound_speed_m_s=140" : "flow.sound_speed_m_s=245"};
+  if (scene::preset_of(model).artificial_viscosity)
+    set.push_back(iron ? "flow.artificial_viscosity=0.35" : "flow.artificial_viscosity=0.2");
+  return set;
 }
 
 /// One weld of the matrix.
@@ -58,10 +62,8 @@ std::vector<Weld> matrix(const PaperArguments& a) {
                                          w.case_file.string()));
           w.set.push_back("model=" + model);
           if (model != kIsph) {
-            const auto more = of_weakly_compressible(metal);
+            const auto more = of_weakly_compressible(metal, model);
             w.set.insert(w.set.end(), more.begin(), more.end());
-            if (scene::preset_of(model).artificial_viscosity)
-              w.set.push_back("flow.artificial_viscosity=0.35");
           }
           if (model == "wcsph")  // steps of the full modulus would take weeks
             w.set.push_back(fmt::format("flow.elastic_modulus_scale={}", kModulusScale));
