@@ -8,7 +8,7 @@ namespace meltray::terms::MELTRAY_INSTRUCTIONS {
 
 namespace {
 
-constexpr Index kLanes = 8, kRows = 2;  // as in sph/clusters.hpp
+constexpr Index kLanes = kOctetSlots, kRows = kRowsOfGroup;
 
 /// A register; an octet is read in one piece or in several.
 using Lanes = std::experimental::native_simd<double>;

@@ -8,6 +8,9 @@
 /// with the rest of the program.
 namespace meltray::terms {
 
+/// Slots of an octet, and rows of a group: those of sph/clusters.hpp, which this header keeps away from.
+constexpr Index kOctetSlots = 8, kRowsOfGroup = 2;
+
 /// Fields of a cluster set, one entry per slot; empty slots have no volume and no drag and are far away.
 struct AcousticFields {
   const double *x[3], *v[3];

@@ -10,6 +10,8 @@ namespace meltray::terms {
 
 namespace {
 
+static_assert(kOctetSlots == sph::kLanes && kRowsOfGroup == sph::kGroupRows);
+
 /// Groups of rows that one task handles.
 constexpr Index kGroupsPerBlock = 32;
 /// Monaghan 2000: repulsion as a share of a negative pressure, and of the sum of two positive ones.
