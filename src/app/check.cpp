@@ -25,6 +25,7 @@ using scene::Simulation;
 
 /// Speed of melt in a developed weld pool, for limits and estimates before there is one [m/s].
 constexpr double kPoolSpeed = 5;
+
 bool is_inside(const scene::Body& b, const Vec3& x, int dim, double slack) {
   double r2 = 0;
   for (int c = 0; c < dim; ++c) {

@@ -85,8 +85,8 @@ void Model::take_up(const Partitions& before) {
 
 bool Model::needs_surface() const {
   const Terms& t = scene_.terms;
-  return t.pressure || t.surface_tension || t.recoil || t.evaporation || t.radiation || t.marangoni ||
-         scene_.laser.has_value();
+  return needs_pairs() && (t.pressure || t.surface_tension || t.recoil || t.evaporation || t.radiation ||
+                           t.marangoni || scene_.laser.has_value());
 }
 
 terms::ViscousChoice Model::viscous(bool implicit_part) const {
@@ -190,7 +190,7 @@ void Model::update_temperature(Index i) {
 
 /// Surface, and the coefficients that rest on it.
 void Model::update_surface() {
-  if (needs_surface() && needs_pairs()) {
+  if (needs_surface()) {
     const auto timer = timers_.measure(Part::surface);
     terms::compute_surface(stage);
     if (scene_.terms.wetting) wetting_.turn_normals(stage);

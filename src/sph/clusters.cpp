@@ -14,8 +14,6 @@ namespace {
 
 /// Width of a column in spacings: eight particles of a lattice then fill a cube, in 2-D a square.
 constexpr double kColumnWidth3 = 2, kColumnWidth2 = 2.83;
-/// Coordinate of empty slots: beyond the reach of everything.
-constexpr double kNowhere = 1e30;
 constexpr Index kOctetsPerBlock = 64;
 
 double wrapped(double x, double period) {
@@ -70,18 +68,16 @@ void ClusterSet::sort(const Patch& patch, const std::vector<std::uint8_t>& chose
   if (count == 0) columns_[0] = 1;
 
   const Index columns = columns_[0] * columns_[1];
-  std::vector<Index> first(columns + 1, 0);
+  std::vector<Index> in_column(columns, 0);
   of_column_.clear();
   for (Index i = 0; i < patch.size(); ++i)
     if (chosen[i] == kind) {
       of_column_.emplace_back(column_of(position(i)), i);
-      ++first[of_column_.back().first + 1];
+      ++in_column[of_column_.back().first];
     }
   column_start_.assign(columns + 1, 0);
-  for (Index c = 0; c < columns; ++c) {
-    column_start_[c + 1] = column_start_[c] + (first[c + 1] + kLanes - 1) / kLanes;
-    first[c + 1] += first[c];
-  }
+  for (Index c = 0; c < columns; ++c)
+    column_start_[c + 1] = column_start_[c] + (in_column[c] + kLanes - 1) / kLanes;
   const Index octets = column_start_[columns];
   particle_.assign(static_cast<std::size_t>(octets) * kLanes, -1);
   std::vector<Index> filled(columns, 0);

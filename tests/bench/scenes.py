@@ -23,7 +23,8 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-WELD = HERE.parents[1] / "cases" / "weld_iron_2kw.toml"
+CASES = HERE.parents[1] / "cases"
+WELD = CASES / "weld_iron_2kw.toml"
 DAM_BREAK = HERE / "dam_break.toml"
 DEVELOPED = 3e-3  # [s]
 
@@ -39,13 +40,13 @@ FEATURES = {
     "500 rays": (["laser.rays=500"], None),
     "projection in every stage": (["splitting.projection=stage"], None),
 }
-SOUND = ["time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1", "flow.sound_speed_m_s=140"]
+# Case and settings of the rows of Table 1
 ROWS = {
-    "isph": [],
-    "wcsph_reduced": ["model=wcsph_reduced", *SOUND, "flow.artificial_viscosity=0.35"],
-    "wcsph_reduced_interface": ["model=wcsph_reduced_interface", *SOUND],
-    "wcsph, elastic": ["model=wcsph", *SOUND, "flow.artificial_viscosity=0.35", "flow.elastic_modulus_scale=1e-4"],
-    "wcsph, fixed solid": ["model=wcsph", *SOUND, "flow.artificial_viscosity=0.35", "flow.solid=fixed"],
+    "isph": (WELD, []),
+    "wcsph_reduced": (CASES / "weld_iron_2kw_wcsph_reduced.toml", []),
+    "wcsph_reduced_interface": (CASES / "weld_iron_2kw_wcsph_reduced_interface.toml", []),
+    "wcsph, elastic": (CASES / "weld_iron_2kw_wcsph.toml", []),
+    "wcsph, fixed solid": (CASES / "weld_iron_2kw_wcsph.toml", ["flow.solid=fixed"]),
 }
 # Particles of water -> spacing over the height of the column
 SIZES = {"24k": 1 / 29, "163k": 1 / 54.5, "0.5M": 1 / 80, "2M": 1 / 126}
@@ -127,8 +128,8 @@ def features(binary, folder, quick, threads, pool=None):
 
 def rows_of_table_1(binary, folder, quick, threads):
     until = 1e-4 if quick else 1e-3
-    rows = [row(name, run(binary, WELD, folder / f"row{k}", until, settings, threads), threads)
-            for k, (name, settings) in enumerate(ROWS.items())]
+    rows = [row(name, run(binary, case, folder / f"row{k}", until, settings, threads), threads)
+            for k, (name, (case, settings)) in enumerate(ROWS.items())]
     show(f"the first {until * 1e3:g} ms of the weld by rows of Table 1", rows)
     return rows
 

@@ -17,6 +17,8 @@ namespace meltray::sph {
 
 /// Particles in an octet, and rows that share one list of octets.
 inline constexpr Index kLanes = 8, kGroupRows = 2;
+/// Coordinate of empty slots: beyond the reach of everything [m].
+inline constexpr double kNowhere = 1e30;
 
 /// Some particles of a patch in octets: columns two or three spacings wide, each sorted by height and cut
 /// into pieces of eight. The last octet of a column may have empty slots.

@@ -26,14 +26,18 @@ constexpr double kSeedJitter = 0.05;
 /// Of Young's modulus in the row with elastic solid: sound in it is then as slow as in the melt.
 constexpr double kModulusScale = 1e-4;
 constexpr const char* kIsph = "isph";
-/// What weakly compressible welds of a metal have in common, as in cases/iron_wcsph.toml and
-/// cases/aluminium_wcsph.toml.
-std::vector<std::string> of_weakly_compressible(const std::string& metal, const std::string& model) {
-  const bool iron = metal == "iron";
-  std::vector<std::string> set = {"time.method=multirate", "time.fixed_step_s=1e-6", "time.cfl_acoustic=1",
-                                  iron ? "flow.sound_speed_m_s=140" : "flow.sound_speed_m_s=245"};
+
+/// Steps, speed of sound and artificial viscosity of a metal's weakly compressible cases, for another row or
+/// frequency.
+std::vector<std::string> of_weakly_compressible(const fs::path& cases, const std::string& metal,
+                                                const std::string& model) {
+  const scene::Scene like = scene::read_case(cases / fmt::format("weld_{}_100hz_wcsph_reduced.toml", metal));
+  std::vector<std::string> set = {"time.method=multirate",
+                                  fmt::format("time.fixed_step_s={}", like.time.integrator.fixed_step),
+                                  fmt::format("time.cfl_acoustic={}", like.time.cfl_acoustic),
+                                  fmt::format("flow.sound_speed_m_s={}", like.flow.sound_speed)};
   if (scene::preset_of(model).artificial_viscosity)
-    set.push_back(iron ? "flow.artificial_viscosity=0.35" : "flow.artificial_viscosity=0.2");
+    set.push_back(fmt::format("flow.artificial_viscosity={}", like.flow.artificial_viscosity));
   return set;
 }
 
@@ -62,7 +66,7 @@ std::vector<Weld> matrix(const PaperArguments& a) {
                                          w.case_file.string()));
           w.set.push_back("model=" + model);
           if (model != kIsph) {
-            const auto more = of_weakly_compressible(metal, model);
+            const auto more = of_weakly_compressible(cases, metal, model);
             w.set.insert(w.set.end(), more.begin(), more.end());
           }
           if (model == "wcsph")  // steps of the full modulus would take weeks

@@ -31,8 +31,8 @@ void set_rest(scene::Simulation& simulation) {
   if (p.density.empty()) return;
   for (std::size_t i = 0; i < p.size(); ++i)
     if (p.is_liquid(i)) {
-      p.mass[i] *= 1 + (1 - p.x[1][i]) / (c * c);
       p.density[i] = 1 + (1 - p.x[1][i]) / (c * c);
+      p.mass[i] *= p.density[i];
     }
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "meltray/core/errors.hpp"
+#include "processor.hpp"
 #include "terms/pressure/acoustic_kernel.hpp"
 
 namespace meltray::terms {
@@ -27,15 +28,11 @@ using Choose = const AcousticKernel& (*)(int dim, bool cubic_spline);
 /// The builds of the loops that this processor can run, best first.
 template <class F>
 void for_builds(F&& f) {
-  __builtin_cpu_init();
 #ifdef MELTRAY_WITH_V4
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    f(v4::choose);
+  if (processor_has_level(4)) f(v4::choose);
 #endif
 #ifdef MELTRAY_WITH_V3
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
-    f(v3::choose);
+  if (processor_has_level(3)) f(v3::choose);
 #endif
   f(baseline::choose);
 }

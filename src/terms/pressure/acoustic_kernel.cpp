@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Compiled for several instruction sets, MELTRAY_INSTRUCTIONS names the one at hand: see cmake/rooms.cmake.
+// Compiled for several instruction sets, MELTRAY_INSTRUCTIONS names the one at hand: see
+// cmake/instruction_set.cmake.
 #include "terms/pressure/acoustic_kernel.hpp"
 
 #include <experimental/simd>
+
+#include "meltray/sph/kernel.hpp"
 
 namespace meltray::terms::MELTRAY_INSTRUCTIONS {
 
@@ -29,16 +32,22 @@ inline void for_pieces(const OctetLists& lists, Index group, F&& f) {
     for (Index lane = 0; lane < kLanes; lane += kWidth) f(lists.octet[k] * kLanes + lane);
 }
 
-/// Wendland C2, as in sph/kernel.hpp.
-template <int D>
-struct Wendland {
+/// 1/h, alpha/h^D and `slope` alpha/h^(D+2) of a kernel of sph/kernel.hpp.
+template <int D, class Plain>
+struct Scaled {
   double inverse_h, scale_w, scale_f;
-  explicit Wendland(double h) : inverse_h(1 / h) {
-    const double volume = D == 2 ? h * h : h * h * h;
-    constexpr double kAlpha = D == 2 ? 7 / (4 * 3.14159265358979323846) : 21 / (16 * 3.14159265358979323846);
-    scale_w = kAlpha / volume;
-    scale_f = -5 * scale_w * inverse_h * inverse_h;
-  }
+  Scaled(double h, double slope)
+      : inverse_h(1 / h),
+        scale_w(Plain::kAlpha / (D == 2 ? h * h : h * h * h)),
+        scale_f(slope * scale_w * inverse_h * inverse_h) {}
+};
+
+/// sph::WendlandC2 over registers.
+template <int D>
+struct Wendland : Scaled<D, sph::WendlandC2<D>> {
+  using Base = Scaled<D, sph::WendlandC2<D>>;
+  using Base::inverse_h, Base::scale_w, Base::scale_f;
+  explicit Wendland(double h) : Base(h, -5) {}
   Lanes f(const Lanes& r) const {
     const Lanes t = max(Lanes(1) - 0.5 * inverse_h * r, Lanes(0));
     return scale_f * t * t * t;
@@ -49,16 +58,12 @@ struct Wendland {
   }
 };
 
-/// Cubic spline, as in sph/kernel.hpp.
+/// sph::CubicSpline over registers.
 template <int D>
-struct Cubic {
-  double inverse_h, scale_w, scale_f;
-  explicit Cubic(double h) : inverse_h(1 / h) {
-    const double volume = D == 2 ? h * h : h * h * h;
-    constexpr double kAlpha = D == 2 ? 15 / (7 * 3.14159265358979323846) : 3 / (2 * 3.14159265358979323846);
-    scale_w = kAlpha / volume;
-    scale_f = scale_w * inverse_h * inverse_h;
-  }
+struct Cubic : Scaled<D, sph::CubicSpline<D>> {
+  using Base = Scaled<D, sph::CubicSpline<D>>;
+  using Base::inverse_h, Base::scale_w, Base::scale_f;
+  explicit Cubic(double h) : Base(h, 1) {}
   Lanes f(const Lanes& r) const {
     const Lanes q = inverse_h * r, a = max(2 - q, Lanes(0));
     Lanes f = -0.5 * a * a / max(q, Lanes(1));

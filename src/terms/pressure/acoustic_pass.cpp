@@ -16,8 +16,6 @@ static_assert(kOctetSlots == sph::kLanes && kRowsOfGroup == sph::kGroupRows);
 constexpr Index kGroupsPerBlock = 32;
 /// Monaghan 2000: repulsion as a share of a negative pressure, and of the sum of two positive ones.
 constexpr double kUnderTension = 0.2, kUnderPressure = 0.01;
-/// Where empty slots are [m].
-constexpr double kNowhere = 1e30;
 
 enum Kind : std::uint8_t { kOther, kMelt, kWall };
 
@@ -59,16 +57,15 @@ void renormalise(Index slots, const AlignedDoubles (&moments)[6], AlignedDoubles
 
 }  // namespace
 
-void AcousticPass::Fields::pack(const Stage& s, const std::vector<double>& drag_of) {
+void AcousticPass::Fields::pack(const Stage& s) {
   const Patch& p = *s.patch;
   for (int c = 0; c < s.constants->dim; ++c) {
-    set.pack(p.x[c], kNowhere, x[c]);
+    set.pack(p.x[c], sph::kNowhere, x[c]);
     set.pack(p.v[c], 0, v[c]);
   }
   set.pack(p.density, s.constants->density, density);
   set.pack(s.volume, 0, volume);
   set.pack(p.pressure, 0, pressure);
-  if (!drag_of.empty()) set.pack(drag_of, 0, drag);
 }
 
 AcousticFields AcousticPass::Fields::view() {
@@ -153,22 +150,23 @@ void AcousticPass::find_pairs(Stage& s, double skin, const std::array<double, 3>
   for (int c = 0; c < k.dim; ++c)
     for (auto* field : {&pressure_force_[c], &viscous_force_[c], &melt_.gradient[c]})
       field->assign(melt_.set.slots(), 0.0);
-  if (diffusion.coefficient > 0 && diffusion.form == DiffusionForm::antuono)
+  if (diffusion.needs_gradients())
     for (int m = 0; m < symmetric_count(k.dim); ++m) moment_[m].resize(melt_.set.slots());
+  if (artificial.alpha == 0) return;
+  // Slip walls take no part in artificial viscosity.
+  drag_.resize(s.size());
+  parallel_for(s.size(), [&](Index i) {
+    const int wall = s.patch->wall[i];
+    drag_[i] = wall && !k.faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
+  });
+  melt_.set.pack(drag_, 0, melt_.drag);
+  wall_.set.pack(drag_, 0, wall_.drag);
 }
 
 void AcousticPass::gather(Stage& s) {
-  // Slip walls take no part in artificial viscosity.
-  if (artificial.alpha > 0) {
-    drag_.resize(s.size());
-    parallel_for(s.size(), [&](Index i) {
-      const int wall = s.patch->wall[i];
-      drag_[i] = wall && !s.constants->faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
-    });
-  }
-  melt_.pack(s, drag_);
+  melt_.pack(s);
   melt_.set.pack(s.excess, 0, melt_.excess);
-  wall_.pack(s, drag_);
+  wall_.pack(s);
   run(kernel_of(s).extrapolate, arguments(s), wall_.set.groups());
   const bool pulls = state.tension != Tension::none;
   for_particles(wall_.set, [&](Index slot, Index i) {
@@ -180,7 +178,7 @@ void AcousticPass::gather(Stage& s) {
 void AcousticPass::evaluate(const Stage& s) {
   const AcousticArguments a = arguments(s);
   const AcousticKernel& kernel = kernel_of(s);
-  if (diffusion.coefficient > 0 && diffusion.form == DiffusionForm::antuono) {
+  if (diffusion.needs_gradients()) {
     run(kernel.excess_gradient, a, melt_.set.groups());
     sph::with_dim(s.constants->dim,
                   [&](auto d) { renormalise<d>(melt_.set.slots(), moment_, melt_.gradient); });

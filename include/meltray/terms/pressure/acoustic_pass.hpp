@@ -8,7 +8,6 @@ namespace meltray::terms {
 
 struct AcousticFields;
 struct AcousticArguments;
-struct AcousticKernel;
 
 /// Everything that a weakly compressible scene sums over pairs at the pace of sound: pressure of the walls,
 /// continuity, density diffusion, pressure force and artificial viscosity, in one pass over clusters (two
@@ -43,11 +42,10 @@ class AcousticPass {
   struct Fields {
     sph::ClusterSet set;
     AlignedDoubles x[3], v[3], density, volume, pressure, drag, excess, gradient[3];
-    void pack(const Stage& stage, const std::vector<double>& drag_of);
+    void pack(const Stage& stage);
     AcousticFields view();
   };
   AcousticArguments arguments(const Stage& stage);
-  void renormalise_gradients(const Stage& stage);
 
   std::array<double, 3> period_{};
   std::vector<std::uint8_t> kind_;

@@ -49,6 +49,7 @@ enum class DiffusionForm { molteni_colagrossi, antuono };
 struct DensityDiffusion {
   DiffusionForm form = DiffusionForm::antuono;
   double coefficient = 0;  ///< delta; 0: none
+  bool needs_gradients() const { return coefficient > 0 && form == DiffusionForm::antuono; }
 };
 
 /// The pressure gradient of Eq. (3), first term, and how the surface pressure q (recoil and surface tension)
