@@ -230,7 +230,10 @@ void print_laser(const Scene& s) {
          fmt::format("solid {:.3f}, liquid {:.3f} (Fresnel, optics {})",
                      laser::absorptance(scene::laser_index(s).solid, 1),
                      laser::absorptance(scene::laser_index(s).liquid, 1), scene::name_of(s.laser->optics)));
-  line("rays, retrace at latest every [s]", fmt::format("{}, {:g}", t.rays, s.laser->retrace_interval));
+  line("rays, retrace at latest every [s]",
+       fmt::format("{}{}, {:g}", t.rays,
+                   t.ray_error > 0 ? fmt::format(" or as many as an error of {:g} takes", t.ray_error) : "",
+                   s.laser->retrace_interval));
 }
 
 void print_limits_passed(const Scene& s) {

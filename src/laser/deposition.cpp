@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "laser/cell_grid.hpp"
+#include "laser/cubes.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/laser/laser.hpp"
@@ -91,31 +92,22 @@ std::vector<HitGroup> group_hits(std::vector<Hit>& hits, double edge, double& lo
     lost += hit.power;
     return true;
   });
-  // Twenty-one bits of an axis are enough for two million cubes; what is farther is only not sorted.
-  constexpr double kMost = (1 << 21) - 1;
-  const auto cube_of = [&](const Hit& hit) { return Vec3((hit.position / edge).array().floor()); };
-  Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity());
-  for (const Hit& hit : hits) lowest = lowest.cwiseMin(cube_of(hit));
+  const Cubes cubes(hits, edge);
   struct Key {
     std::uint64_t cube;
     std::size_t hit;
     auto operator<=>(const Key&) const = default;
   };
   std::vector<Key> keys(hits.size());
-  for (std::size_t h = 0; h < hits.size(); ++h) {
-    const Vec3 cube = (cube_of(hits[h]) - lowest).cwiseMin(kMost);
-    keys[h] = {static_cast<std::uint64_t>(cube.z()) << 42 | static_cast<std::uint64_t>(cube.y()) << 21 |
-                   static_cast<std::uint64_t>(cube.x()),
-               h};
-  }
+  for (std::size_t h = 0; h < hits.size(); ++h) keys[h] = {cubes.number(hits[h].position), h};
   std::sort(keys.begin(), keys.end());
   std::vector<Hit> sorted;
   sorted.reserve(hits.size());
   std::vector<HitGroup> groups;
   for (std::size_t h = 0; h < keys.size(); ++h) {
     sorted.push_back(hits[keys[h].hit]);
-    if (h == 0 || cube_of(sorted[h]) != cube_of(sorted[h - 1]))
-      groups.push_back({edge * (cube_of(sorted.back()) + Vec3::Constant(0.5)), edge, h, h});
+    if (h == 0 || cubes.at(sorted[h].position) != cubes.at(sorted[h - 1].position))
+      groups.push_back({cubes.centre(sorted[h].position), edge, h, h});
     groups.back().last = h + 1;
   }
   hits = std::move(sorted);

@@ -179,7 +179,7 @@ struct Tracer::Impl {
     }
     const auto record = [&](const Vec3& where, double power) {
       if (power <= 0) return;
-      if (fate.hits < out.size()) out[fate.hits] = {where, power};
+      if (fate.hits < out.size()) out[fate.hits] = {where, power, static_cast<std::uint32_t>(number)};
       ++fate.hits;
     };
     Vec3 origin = ray.origin, direction = ray.direction / length;

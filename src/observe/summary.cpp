@@ -87,6 +87,7 @@ Json laser_json(const scene::LaserBudget& l) {
           {"relative_error", l.in > 0 ? std::abs(l.in - out) / l.in : 0},
           {"worst_trace_relative_error", l.worst},
           {"traces", l.traces},
+          {"rays", l.rays},
           {"dropped_rays", l.dropped_rays}};
 }
 

@@ -34,7 +34,8 @@ void PatchSelector::mark_elastic(Particles& particles, Patch& patch, double dist
   const auto rank = [](Elastic e) { return static_cast<std::uint8_t>(e); };
   patch.elastic.assign(patch.size(), rank(Elastic::none));
   moves_.assign(particles.size(), 0);
-  parallel_for(grid_.cells(), [&](Index cell) {
+  parallel_for(static_cast<std::ptrdiff_t>(patch.cells.size()), [&](std::ptrdiff_t c) {
+    const Index cell = patch.cells[c];
     for (Index k = patch.cell_start[cell]; k < patch.cell_start[cell + 1]; ++k) {
       const Index i = patch.global[k];
       if (patch.liquid[k] || patch.wall[k] || !(everything || near_melt(patch, k, cell, distance))) continue;

@@ -2,6 +2,7 @@
 #include "meltray/particles/patch.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "meltray/core/collect.hpp"
 #include "meltray/core/parallel.hpp"
@@ -43,37 +44,46 @@ void PatchSelector::solidified(const Particles& particles, Index i) {
 void PatchSelector::select_all(const Particles& particles, Patch& patch) {
   core_.clear();
   marked_.assign(grid_.cells(), 1);
+  marked_cells_.resize(grid_.cells());
+  std::iota(marked_cells_.begin(), marked_cells_.end(), 0);
   sort_moving(particles);
   fill(particles, patch);
+}
+
+/// Forgets the last selection; costs what that selection cost, not what the box holds.
+void PatchSelector::unmark() {
+  core_.resize(grid_.cells(), 0);
+  marked_.resize(grid_.cells(), 0);
+  for (const Index cell : marked_cells_) core_[cell] = marked_[cell] = 0;
+  marked_cells_.clear();
+}
+
+/// Takes a cell and those within `reach` cells of it into the selection.
+void PatchSelector::mark(Index cell, Index reach) {
+  if (core_[cell]) return;
+  core_[cell] = 1;
+  grid_.for_block(cell, reach, [&](Index k) {
+    if (!marked_[k]) marked_cells_.push_back(k);
+    marked_[k] = 1;
+  });
 }
 
 void PatchSelector::select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,
                                      Index reach) {
-  core_.assign(grid_.cells(), 0);
-  marked_.assign(grid_.cells(), 0);
-  const auto x = view(particles.x);
-  const auto mark = [&](Index cell) {
-    if (core_[cell]) return;
-    core_[cell] = 1;
-    grid_.for_block(cell, reach, [&](Index k) { marked_[k] = 1; });
-  };
+  unmark();
   sort_moving(particles);
-  for (Index cell = 0; cell < grid_.cells(); ++cell)
-    if (moving_start_[cell + 1] > moving_start_[cell]) mark(cell);
-  for (Index i : also) mark(grid_.cell(x, i));
+  for (const Index cell : moving_cell_) mark(cell, reach);
+  const auto x = view(particles.x);
+  for (Index i : also) mark(grid_.cell(x, i), reach);
+  std::sort(marked_cells_.begin(), marked_cells_.end());
   fill(particles, patch);
 }
 
 void PatchSelector::select_around(const Particles& particles, std::span<const Index> centres, Patch& patch) {
-  core_.assign(grid_.cells(), 0);
-  marked_.assign(grid_.cells(), 0);
+  unmark();
   const auto x = view(particles.x);
-  for (Index i : centres) {
-    const Index cell = grid_.cell(x, i);
-    if (core_[cell]) continue;
-    core_[cell] = 1;
-    grid_.for_block(cell, 1, [&](Index k) { marked_[k] = 1; });
-  }
+  for (Index i : centres) mark(grid_.cell(x, i), 1);
+  std::sort(marked_cells_.begin(), marked_cells_.end());
   sort_moving(particles);
   fill(particles, patch);
 }
@@ -121,15 +131,17 @@ void PatchSelector::fill(const Particles& particles, Patch& patch) {
   const Index cells = grid_.cells();
   patch.dim = particles.dim;
   patch.global.clear();
+  patch.cells = marked_cells_;
   patch.cell_start.resize(cells + 1);
-  for (Index c = 0; c < cells; ++c) {
-    patch.cell_start[c] = patch.size();
-    if (!marked_[c]) continue;
+  Index next = 0;
+  for (const Index c : marked_cells_) {
+    std::fill(patch.cell_start.begin() + next, patch.cell_start.begin() + c + 1, patch.size());
+    next = c + 1;
     patch.global.insert(patch.global.end(), moving_sorted_.begin() + moving_start_[c],
                         moving_sorted_.begin() + moving_start_[c + 1]);
     patch.global.insert(patch.global.end(), resting_[c].begin(), resting_[c].end());
   }
-  patch.cell_start[cells] = patch.size();
+  std::fill(patch.cell_start.begin() + next, patch.cell_start.end(), patch.size());
 
   reload(particles, patch);
 }

@@ -138,7 +138,11 @@ std::vector<Key> beam_keys() {
 
 std::vector<Key> trace_keys() {
   return {
-      integer("laser.rays", between(1, 10000000), MELTRAY_AT(laser->trace.rays), "Rays of one trace."),
+      integer("laser.rays", between(1, 10000000), MELTRAY_AT(laser->trace.rays),
+              "Rays of one trace; with an error target the most of them."),
+      number("laser.ray_error", "", between(0, 1), MELTRAY_AT(laser->trace.ray_error),
+             "Error target that sets the number of rays: share of the absorbed light that the two halves of "
+             "the rays put into different places, two spacings wide; 0 for always `rays`."),
       absorptivity(),
       word<Optics>("laser.optics",
                    {{"by_phase", Optics::by_phase}, {"solid", Optics::solid}, {"hot_melt", Optics::hot_melt}},

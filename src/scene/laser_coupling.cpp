@@ -16,6 +16,8 @@ namespace {
 constexpr double kDepositRadius = 1.3;
 /// Hits that share a cube of this many spacings look for their particles together.
 constexpr double kHitGroup = 0.5;
+/// Edge of the cubes in which the error of a trace is taken, in spacings: about as far as hits are spread.
+constexpr double kErrorCube = 2;
 
 laser::TraceOptions options_of(const Scene& scene) {
   laser::TraceOptions o = scene.laser->trace;
@@ -28,7 +30,10 @@ laser::TraceOptions options_of(const Scene& scene) {
 }  // namespace
 
 LaserCoupling::LaserCoupling(const Scene& scene, const terms::SceneConstants& constants)
-    : scene_(scene), constants_(constants), beam_(scene.laser->beam) {}
+    : scene_(scene),
+      constants_(constants),
+      beam_(scene.laser->beam),
+      ray_count_(scene.laser->trace.ray_error, scene.laser->trace.rays) {}
 
 bool LaserCoupling::due(double t) const {
   return stale_ || t >= next_trace_ || motion_ > scene_.laser->retrace_motion * constants_.spacing;
@@ -85,10 +90,15 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   lost_ = 0;
   lit_.clear();
   if (beam_.power(t) <= 0) return;
-  const auto rays = beam_.rays(t, scene_.laser->trace.rays, box.max[2] + constants_.spacing);
-  laser::Trace trace = tracer_.trace(rays, options_of(scene_));
+  const laser::TraceOptions options = options_of(scene_);
+  const int count = options.ray_error > 0 ? ray_count_.next() : options.rays;
+  const auto rays = beam_.rays(t, count, box.max[2] + constants_.spacing);
+  laser::Trace trace = tracer_.trace(rays, options);
   ledger_ = trace.ledger;
   hits_ = std::move(trace.hits);
+  budget_.rays += count;
+  if (options.ray_error > 0)
+    ray_count_.learn(laser::sampling_error(hits_, kErrorCube * constants_.spacing), count);
   const double error =
       std::abs(ledger_.in - ledger_.absorbed - ledger_.escaped - ledger_.residual - ledger_.dropped);
   budget_.worst = std::max(budget_.worst, error / ledger_.in);
@@ -153,7 +163,9 @@ void LaserCoupling::archive(Archive& a) {
   a.value("laser/dropped", budget_.dropped);
   a.value("laser/worst", budget_.worst);
   a.value("laser/traces", budget_.traces);
+  a.value("laser/rays", budget_.rays);
   a.value("laser/dropped_rays", budget_.dropped_rays);
+  ray_count_.archive(a);
   a.value("laser/ledger_in", ledger_.in);
   a.value("laser/ledger_absorbed", ledger_.absorbed);
   a.value("laser/ledger_escaped", ledger_.escaped);

@@ -44,6 +44,7 @@ class LaserCoupling {
   const terms::SceneConstants& constants_;
   laser::Beam beam_;
   laser::Tracer tracer_;
+  laser::RayCount ray_count_;
   std::vector<laser::Hit> hits_;
   std::vector<laser::HitGroup> groups_;  ///< of hits_
   laser::Ledger ledger_;

@@ -10,8 +10,8 @@ namespace meltray::sph {
 
 namespace {
 
-/// Consecutive cells handled by one task; fixed, so that the list does not depend on the number of threads.
-constexpr Index kCellsPerBlock = 128;
+/// Cells of the patch handled by one task; fixed, so that the list does not depend on the number of threads.
+constexpr Index kCellsPerBlock = 32;
 /// Widens the reach of the search by more than single precision loses over a cell and its neighbours.
 constexpr float kRounding = 1.00001f;
 
@@ -19,13 +19,15 @@ constexpr float kRounding = 1.00001f;
 
 void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
                       const std::vector<std::uint8_t>& wanted) {
-  const Index cells = grid.cells(), blocks = (cells + kCellsPerBlock - 1) / kCellsPerBlock;
+  const Index cells = static_cast<Index>(patch.cells.size());
+  const Index blocks = (cells + kCellsPerBlock - 1) / kCellsPerBlock;
   blocks_.resize(blocks);
   with_dim(dim_, [&](auto d) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (Index b = 0; b < blocks; ++b) {
-      const Index last_cell = std::min(cells, (b + 1) * kCellsPerBlock);
-      for (Index cell = b * kCellsPerBlock; cell < last_cell; ++cell) {
+      const Index last_of_block = std::min(cells, (b + 1) * kCellsPerBlock);
+      for (Index c = b * kCellsPerBlock; c < last_of_block; ++c) {
+        const Index cell = patch.cells[c];
         const Index first = patch.cell_start[cell], last = patch.cell_start[cell + 1];
         if (std::none_of(wanted.begin() + first, wanted.begin() + last, [](auto w) { return w != 0; }))
           continue;

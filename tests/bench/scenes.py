@@ -2,13 +2,20 @@
 # SPDX-License-Identifier: MIT
 """Whole scenes at fixed work: what each feature of a weld costs, growth with particles, one thread and two.
 
-usage: scenes.py BINARY [--json FILE] [--quick] [--only features|rows|threads|growth] [--pool RUN]
+usage: scenes.py BINARY [--json FILE] [--quick] [--only GROUP] [--pool RUN...]
 
   features  a developed pool (the 2 kW weld at 3 ms, or the run --pool) goes on with features taken away, one at a
             time
   rows      the same weld from its start by the rows of Table 1, and in two dimensions
   threads   the weld and a dam break with one thread and two
+  cold      the weld in the whole workpiece and in one cut off below, where nothing happens: what cold solid costs
+            in time, memory and, where valgrind is installed, instructions a step
+  pools     developed pools (--pool, each a finished run) go on with each projection: what a simulated millisecond
+            costs by the number of liquid particles; left out without --pool
   growth    a dam break with 24,000 to 2 million particles of water, 82 neighbours, two evaluations a step
+
+Pools of any size are made by a stronger weld, run to later and later times:
+`meltray run cases/weld_iron_2kw.toml --set laser.power_w=4000 --until 0.02 --out RUN`.
 
 Every scene runs in a process of its own, for a fixed simulated time; numbers are ratios within one run of this
 program. Wall times on a machine that does other work mean little; microseconds per liquid particle and step and
@@ -18,6 +25,8 @@ import argparse
 import json
 import os
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,6 +60,11 @@ ROWS = {
 # Particles of water -> spacing over the height of the column
 SIZES = {"24k": 1 / 29, "163k": 1 / 54.5, "0.5M": 1 / 80, "2M": 1 / 126}
 STEPS = 60  # of a dam break, about
+# Lower end of the workpiece, far below the melt. So early both make the same steps; and the smaller the pool, the
+# more a step could show of what lies idle.
+WORKPIECES = {"cut off at 3 mm": -3e-3, "whole, 6 mm": -6e-3}
+COLD_START, COLD_END = 1e-4, 3e-4  # [s]
+COLD_PARTICLES = 80 * 48 * 60  # that the whole workpiece has more
 
 
 def call(binary, *arguments):
@@ -76,7 +90,8 @@ def fork(binary, source, out, until, settings, threads):
     call(binary, "resume", source, "--out", out, "--until", until, "--threads", threads, "--quiet", *sets(settings))
     after = json.loads((out / "summary.json").read_text())
     after["mean_liquid_particles"] = after["particles"]["liquid"]
-    after["steps"] -= before["steps"]
+    for counter in ("steps", "pressure_solves", "time_s"):
+        after[counter] -= before[counter]
     return after
 
 
@@ -108,8 +123,8 @@ def show(title, rows):
               flush=True)
 
 
-def features(binary, folder, quick, threads, pool=None):
-    base = pool or folder / "developed"
+def features(binary, folder, quick, threads, pool):
+    base = pool[0] if pool else folder / "developed"
     if not pool:
         run(binary, WELD, base, DEVELOPED, ["output.snapshot_interval_s=0"], threads)
     until = json.loads((base / "summary.json").read_text())["time_s"] + (5e-5 if quick else 3e-4)
@@ -142,6 +157,67 @@ def dam_break(binary, out, size, threads):
     return row(f"dam break, {size}", summary, threads)
 
 
+def instructions_per_step(binary, source, until):
+    """Instructions of a step by callgrind, on one thread; nothing without valgrind."""
+    if not shutil.which("valgrind"):
+        return None
+    before = json.loads((source / "summary.json").read_text())
+    out = source.with_name(source.name + "_counted")
+    # The program starts itself anew for its threads' settings unless they are given.
+    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}.callgrind",
+               "--toggle-collect=meltray::scene::Simulation::step(double)", str(binary), "resume", str(source),
+               "--out", str(out), "--until", str(until), "--threads", "1", "--quiet"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False,
+                          env={**os.environ, "GOMP_SPINCOUNT": "0"})
+    collected = re.search(r"Collected : (\d+)", done.stderr)
+    if done.returncode != 0 or not collected:
+        sys.exit(f"scenes.py: {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
+    after = json.loads((out / "summary.json").read_text())
+    return int(collected[1]) / (after["steps"] - before["steps"])
+
+
+def cold(binary, folder, quick, threads):
+    rows = []
+    for k, (name, bottom) in enumerate(WORKPIECES.items()):
+        settings = [f"{key}=[0.0, -1.2e-3, {bottom}]" for key in ("domain.min_m", "bodies.0.min_m")]
+        base = folder / f"cold{k}"
+        run(binary, WELD, base, COLD_START, ["output.snapshot_interval_s=0", *settings], threads)
+        until = COLD_START + 5e-5 if quick else COLD_END
+        rows.append(row(name, fork(binary, base, folder / f"cold{k}_on", until, [], threads), threads))
+        rows[-1]["instructions_per_step"] = instructions_per_step(binary, base, until)
+    show("a weld and its cold solid", rows)
+    cut, whole = rows
+    print(f"a step of the whole workpiece: {whole['milliseconds_per_step'] / cut['milliseconds_per_step']:.3f} times "
+          "the time", end="")
+    if whole["instructions_per_step"]:
+        print(f", {whole['instructions_per_step'] / cut['instructions_per_step']:.4f} times the instructions", end="")
+    print(f"; {1e6 * (whole['peak_memory_mb'] - cut['peak_memory_mb']) / COLD_PARTICLES:.0f} bytes a particle of "
+          "cold solid")
+    return rows
+
+
+def pools(binary, folder, quick, threads, pool):
+    rows = []
+    for k, base in enumerate(pool):
+        until = json.loads((base / "summary.json").read_text())["time_s"] + (2e-5 if quick else 1e-4)
+        for projection in ("step", "stage"):
+            summary = fork(binary, base, folder / f"pool{k}{projection}", until,
+                           [f"splitting.projection={projection}", "output.snapshot_interval_s=0"], threads)
+            liquid, wall = summary["particles"]["liquid"], row("", summary, threads)["seconds"]
+            rows.append({
+                **row(f"{liquid} liquid, {projection}", summary, threads),
+                "seconds_per_millisecond": 1e-3 * wall / summary["time_s"],
+                "step_us": 1e6 * summary["time_s"] / summary["steps"],
+                "microseconds_per_liquid_particle_and_solve":
+                    1e6 * summary["time_by_part"]["pressure"]["seconds"] / summary["pressure_solves"] / liquid,
+            })
+    show("developed pools", rows)
+    for r in rows:
+        print(f"{r['name']}: {r['seconds_per_millisecond']:.1f} s a simulated ms, steps of {r['step_us']:.2f} us, "
+              f"{r['microseconds_per_liquid_particle_and_solve']:.2f} us a liquid particle and pressure solve")
+    return rows
+
+
 def growth(binary, folder, quick, threads):
     rows = [dam_break(binary, folder / f"growth{size}", size, threads) for size in list(SIZES)[:2 if quick else 4]]
     show("growth with particles: a dam break", rows)
@@ -159,7 +235,8 @@ def one_and_more_threads(binary, folder, quick, threads):
     return rows
 
 
-GROUPS = {"features": features, "rows": rows_of_table_1, "threads": one_and_more_threads, "growth": growth}
+GROUPS = {"features": features, "rows": rows_of_table_1, "threads": one_and_more_threads, "cold": cold,
+          "pools": pools, "growth": growth}
 
 
 def main():
@@ -168,14 +245,16 @@ def main():
     parser.add_argument("--json")
     parser.add_argument("--quick", action="store_true", help="a tenth of the work")
     parser.add_argument("--only", choices=GROUPS, help="one group of scenes")
-    parser.add_argument("--pool", type=pathlib.Path, help="a run with a developed pool")
+    parser.add_argument("--pool", type=pathlib.Path, nargs="+", default=[], help="runs with a developed pool")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     results = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, group in GROUPS.items():
+            if name == "pools" and not arguments.pool:
+                continue
             if arguments.only in (None, name):
-                more = {"pool": arguments.pool} if name == "features" else {}
+                more = {"pool": arguments.pool} if name in ("features", "pools") else {}
                 results[name] = group(arguments.binary, pathlib.Path(folder), arguments.quick, arguments.threads, **more)
     if arguments.json:
         pathlib.Path(arguments.json).write_text(json.dumps(results, indent=1) + "\n")

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "meltray/core/archive.hpp"
 #include "meltray/core/vec.hpp"
 #include "meltray/laser/beam.hpp"
 
@@ -53,7 +54,8 @@ SurfaceMesh reconstruct_surface(const PointCloud& cloud, const Box& region);
 enum class Polarisation { averaged, tracked };
 
 struct TraceOptions {
-  int rays = 1000;
+  int rays = 1000;       ///< of one trace; with an error target the most of them
+  double ray_error = 0;  ///< target of sampling_error(); 0: always `rays`
   Polarisation polarisation = Polarisation::averaged;
   std::optional<double> fixed_absorptance;  ///< replaces Fresnel when set
   std::complex<double> index_solid{1, 0}, index_liquid{1, 0};
@@ -68,7 +70,8 @@ struct TraceOptions {
 /// One absorption event on the surface.
 struct Hit {
   Vec3 position;
-  double power;  ///< absorbed there [W]
+  double power;           ///< absorbed there [W]
+  std::uint32_t ray = 0;  ///< number of the ray in its trace
 };
 
 /// in = absorbed + escaped + residual + dropped to round-off. `residual` is what rays carried when they ended
@@ -105,6 +108,29 @@ class Tracer {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// How uncertain the places of a trace's hits are, from its own halves: the rays of even and of odd number
+/// are two samples of the beam, and the error of both together is as large as their difference. Returns the
+/// sum over cubes of edge `edge` [m] of |even - odd| over the sum of even + odd: 0 where both light the same
+/// cubes alike, 1 where they never meet. 0 without hits.
+double sampling_error(std::span<const Hit> hits, double edge);
+
+/// Chooses the number of rays of each trace so that sampling_error() stays at a target. The error is taken to
+/// fall with the root of the number, as that of random samples; the constant is learned from the traces.
+class RayCount {
+ public:
+  /// `target` > 0; at most `most` rays.
+  RayCount(double target, int most) : target_(target), most_(most) {}
+  int next() const;
+  /// After a trace of `rays` rays with hits of this sampling error.
+  void learn(double error, int rays);
+  void archive(Archive& a) { a.value("laser/ray_constant", constant_); }
+
+ private:
+  double target_;
+  int most_;
+  double constant_ = 0;  ///< mean of error^2 times rays; 0: nothing learned
 };
 
 /// Hits in a cube of edge `edge`: hits[first] ... hits[last - 1].

@@ -13,7 +13,7 @@
 
 namespace meltray::observe {
 
-inline constexpr int kCheckpointSchema = 1;
+inline constexpr int kCheckpointSchema = 2;
 
 /// What a checkpoint says about itself.
 struct CheckpointHeader {

@@ -16,6 +16,7 @@ struct Patch {
   int dim = 3;
   std::vector<Index> global;      ///< patch index -> particle
   std::vector<Index> cell_start;  ///< first patch index of each grid cell (cells() + 1 entries)
+  std::vector<Index> cells;       ///< grid cells that are in the patch, ascending; all others are empty
   Components x, v;
   std::vector<double> h, mass, smoothing, pressure;
   std::vector<double> density;       ///< empty where the store has none
@@ -79,6 +80,8 @@ class PatchSelector {
   }
 
  private:
+  void unmark();
+  void mark(Index cell, Index reach);
   void fill(const Particles& particles, Patch& patch);
   void sort_moving(const Particles& particles);
   bool near_melt(const Patch& patch, Index k, Index cell, double distance) const;
@@ -87,7 +90,8 @@ class PatchSelector {
   std::vector<std::vector<Index>> resting_;  ///< solid and wall particles by cell, ascending
   std::vector<Index> moving_;                ///< liquid particles, ascending
   std::vector<std::uint8_t> core_, marked_;  ///< per cell; core_ empty: every cell
-  std::vector<std::uint8_t> moves_;          ///< per particle, of mark_elastic()
+  std::vector<Index> marked_cells_;
+  std::vector<std::uint8_t> moves_;  ///< per particle, of mark_elastic()
   std::vector<Index> moving_cell_, moving_sorted_, moving_start_;
 };
 

@@ -49,7 +49,7 @@ struct MassBudget {
 /// relative error of any single trace.
 struct LaserBudget {
   double in = 0, absorbed = 0, escaped = 0, residual = 0, dropped = 0, worst = 0;
-  std::int64_t traces = 0, dropped_rays = 0;
+  std::int64_t traces = 0, rays = 0, dropped_rays = 0;
 };
 
 struct Counters {

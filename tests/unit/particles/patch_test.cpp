@@ -103,6 +103,16 @@ TEST_CASE("melting and solidifying keep the selection that a fresh selector woul
   CHECK(selector.moving() == again.moving());
   CHECK(kept.global == fresh.global);
   CHECK(kept.cell_start == fresh.cell_start);
+  CHECK(kept.cells == fresh.cells);
+  // The cells named are all that hold anything, also after selections of other places.
+  selector.select_around(b.p, std::vector<Index>{0}, fresh);
+  selector.select_near_melt(b.p, {}, fresh);
+  CHECK(kept.global == fresh.global);
+  CHECK(kept.cells == fresh.cells);
+  CHECK(std::is_sorted(kept.cells.begin(), kept.cells.end()));
+  Index held = 0;
+  for (const Index c : kept.cells) held += kept.cell_start[c + 1] - kept.cell_start[c];
+  CHECK(held == kept.size());
 }
 
 TEST_CASE("particles around centres are complete within a cell width") {
