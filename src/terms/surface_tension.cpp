@@ -88,7 +88,8 @@ void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
       const double* const p = pressure.data();
       parallel_for(s.size(), [&](Index i) {
         s.surface_pressure[i] = 0;
-        if (s.fill[i] >= 1 || s.loose[i] || s.pairs->begin(i) == s.pairs->end(i)) return;
+        const bool inside = s.surface[i] == 0 && s.fill[i] >= 1;
+        if (inside || s.loose[i] || s.pairs->begin(i) == s.pairs->end(i)) return;
         const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::Pair<D>& q) {
           const double weight = surface[q.j] * q.w;
           return std::array<double, 2>{weight * p[q.j], weight};

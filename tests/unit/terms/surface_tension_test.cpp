@@ -160,3 +160,22 @@ TEST_CASE(
   CHECK(sum == Approx(1));
   CHECK(s.stage.surface_pressure[i] < 0.5);
 }
+
+TEST_CASE("surface tension: a surface layer pressed until its neighbours are complete keeps its pressure") {
+  StageSetup s(3, kDx);
+  s.fill(Vec3::Zero(), Vec3::Constant(9 * kDx), 2000);
+  // Layers at half their distance: the outermost one has twice the neighbours of a flat face.
+  for (std::size_t i = 0; i < s.particles.size(); ++i) s.particles.x[2][i] *= 0.5;
+  s.prepare(Vec3::Zero(), Vec3(9 * kDx, 9 * kDx, 8 * kDx), {true, true, false});
+  std::vector<double> p(s.patch.size(), 0.0);
+  for (Index i = 0; i < s.patch.size(); ++i)
+    if (s.stage.surface[i] > 0) p[i] = 5e4;
+  terms::average_surface_pressure(s.stage, p);
+  int pressed = 0;
+  for (Index i = 0; i < s.patch.size(); ++i) {
+    if (s.stage.surface[i] == 0) continue;
+    pressed += s.stage.fill[i] >= 1;
+    CHECK(s.stage.surface_pressure[i] == Approx(5e4));
+  }
+  CHECK(pressed > 0);
+}
