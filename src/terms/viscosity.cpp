@@ -8,10 +8,10 @@ namespace meltray::terms {
 namespace {
 
 /// Interface viscosity coefficient of one particle, Meier et al. 2021: free-surface part plus a part that
-/// fades out linearly above the melting point. Solid neighbours carry the full solid part.
+/// fades out linearly above the melting point. A dummy behind a face of the box has the full solid part.
 double alpha_of(const Stage& s, Index i, const InterfaceViscosityParameters& p, double grad_norm) {
   const double excess = s.temperature[i] - s.constants->melting_temperature();
-  const double ramp = s.patch->liquid[i] ? std::clamp(1 - excess / p.ramp, 0.0, 1.0) : 1.0;
+  const double ramp = s.patch->wall[i] ? 1.0 : std::clamp(1 - excess / p.ramp, 0.0, 1.0);
   return grad_norm * s.patch->smoothing[i] * p.free * (s.surface[i] > 0) + ramp * p.solid;
 }
 
@@ -53,7 +53,7 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
     constexpr int D = d;
     const double* const volume = s.volume.data();
     const double *const mu = mu_.data(), *const alpha = alpha_.data();
-    const std::uint8_t* const liquid = s.patch->liquid.data();
+    const std::uint8_t *const liquid = s.patch->liquid.data(), *const wall = s.patch->wall.data();
     float* const c = c_.data();
     float* const e[3] = {e_[0].data(), e_[1].data(), e_[2].data()};
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t row) {
@@ -78,9 +78,12 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
       }
       if (choice_.interface) {
         const double alpha_i = alpha[i];
+        // A solid neighbour adds none of its own, as in the published form: melt hotter than the ramp slides
+        // along it with the physical viscosity. A face of the box damps the melt that fills the box.
         pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
+          const double alpha_j = liquid[p.j] || wall[p.j] ? alpha[p.j] : alpha_i;
           const double d_ij =
-              strength * (alpha_i + alpha[p.j]) * (vi * volume[p.j]) * p.f / (p.r2() + softening);
+              strength * (alpha_i + alpha_j) * (vi * volume[p.j]) * p.f / (p.r2() + softening);
           const double root = std::sqrt(-d_ij);
           for (int k = 0; k < D; ++k) e[k][p.k] = static_cast<float>(root * p.x[k]);
         });

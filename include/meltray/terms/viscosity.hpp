@@ -35,8 +35,9 @@ struct ViscousSolve {
 /// Interface viscosity, Meier et al. 2021: d_ij = alpha_ij V_i V_j rho h c F_ij / (r^2 + 0.01 h^2), for
 /// approach
 ///   and separation, with alpha_i = |grad c_i| h alpha_LG + ramp(T_i) alpha_SL. The published form uses
-///   alpha_i alone; alpha_ij = (alpha_i + alpha_j)/2 is used here because it conserves momentum and makes the
-///   implicit operator symmetric.
+///   alpha_i alone; between melt particles alpha_ij = (alpha_i + alpha_j)/2 is used here because it conserves
+///   momentum and makes the implicit operator symmetric. Against a solid neighbour it is the melt's own
+///   alpha_i; dummies behind the faces of the box have alpha_j = alpha_SL.
 class ViscousOperator {
  public:
   /// Evaluates the coefficients at the stage's geometry, temperatures and surface.

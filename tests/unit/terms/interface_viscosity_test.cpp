@@ -98,6 +98,24 @@ TEST_CASE("interface viscosity: only where the surface or melting is, scaled by 
   CHECK(solid_part(1860) == Approx(0).margin(1e-12 * std::abs(full)));
 }
 
+TEST_CASE("interface viscosity: the solid drags only melt within the ramp, by the melt's own coefficient") {
+  StageSetup s(3, kDx);
+  // Melt on solid, inside: periodic all round, so that there is no free surface.
+  const Vec3 max(9 * kDx, 9 * kDx, 12 * kDx);
+  s.fill(Vec3::Zero(), Vec3(9 * kDx, 9 * kDx, 6 * kDx), 1700, false);
+  s.fill(Vec3(0, 0, 6 * kDx), max, 1810);
+  s.prepare(Vec3::Zero(), max, {true, true, true});
+  s.set_velocity([&](const Vec3& x) { return Vec3(x[2] > 6 * kDx ? 1.0 : 0.0, 0, 0); });
+  const auto drag_at = [&](double t) {
+    s.set_temperature([&](const Vec3& x) { return x[2] > 6 * kDx ? t : 1700; });
+    return test::largest(test::acceleration(s, interface(s, {1, 1, 50, 50})));
+  };
+  const double full = drag_at(1810);
+  CHECK(full > 0);
+  CHECK(drag_at(1835) == Approx(0.5 * full));
+  CHECK(drag_at(1861) == 0);
+}
+
 TEST_CASE(
     "interface viscosity: the implicit solve is that of the dense matrix, also with physical viscosity") {
   StageSetup s(3, kDx);
