@@ -1,10 +1,31 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-
 #include "meltray/sph/renormalise.hpp"
 #include "meltray/terms/surface_forces.hpp"
 
 namespace meltray::terms {
+
+namespace {
+
+/// Normal of the surface near particle i: that of its surface neighbours and its own, averaged. Zero far from
+/// the surface.
+template <int D>
+Eigen::Matrix<double, D, 1> mean_normal(const Stage& s, Index i) {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  Vector n;
+  with_kernel<D>(s.constants->kernel, [&](auto kernel) {
+    using Kernel = decltype(kernel);
+    const double self = s.surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+    for (int c = 0; c < D; ++c) n[c] = self * s.normal[c][i];
+  });
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    const double weight = s.surface[p.j] * p.w;
+    for (int c = 0; c < D; ++c) n[c] += weight * s.normal[c][p.j];
+  });
+  const double norm = n.norm();
+  return norm > 0 ? Vector(n / norm) : Vector(Vector::Zero());
+}
+
+}  // namespace
 
 void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) const {
   sph::with_dim(s.constants->dim, [&](auto d) {
@@ -14,9 +35,13 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
     const double rho = s.constants->density;
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
-      if (s.surface[i] == 0 || s.loose[i]) return;
+      if (s.loose[i]) return;
       const double slope = s.constants->material.sigma_slope(s.temperature[i]);
       if (slope == 0) return;
+      const Vector n = mean_normal<D>(s, i);
+      double across = 0;  // -n.grad c
+      for (int c = 0; c < D; ++c) across -= n[c] * s.grad_c[c][i];
+      if (across == 0) return;
       Matrix moment = Matrix::Zero();
       Vector gradient = Vector::Zero();
       s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
@@ -28,14 +53,8 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
         sph::add_moment<D>(moment, vf, p);
       });
       gradient = sph::renormalisation<D>(moment) * gradient;
-      Vector n;
-      double c2 = 0;
-      for (int c = 0; c < D; ++c) {
-        n[c] = s.normal[c][i];
-        c2 += s.grad_c[c][i] * s.grad_c[c][i];
-      }
       gradient -= n * n.dot(gradient);
-      const double factor = slope * 2 * std::sqrt(c2) / (rho * s.constants->lattice.face_gradient);
+      const double factor = slope * 2 * across / (rho * s.constants->lattice.second_moment);
       for (int c = 0; c < D; ++c) acceleration[c][i] += factor * gradient[c];
     });
   });

@@ -48,7 +48,10 @@ struct Recoil {
 /// particle (weights surface_j W_ij), so that one overheated particle does not pull its neighbours apart.
 void average_surface_pressure(Stage& stage, const std::vector<double>& pressure);
 
-/// Marangoni stress as a body force: a = (d sigma/dT / rho) 2 |grad c| (I - n n) grad T, grad T renormalised.
+/// Marangoni stress as a body force: a = (d sigma/dT / rho) 2 (-n.grad c) (I - n n) grad T, grad T
+/// renormalised, n the mean normal of the surface around a particle. Pairs above a plane inside the liquid
+/// cancel in the sum of V grad c over all particles above it, whatever their order, and those across it leave
+/// half the second moment of a full lattice: divided by that, the force per area is d sigma/dT grad T.
 struct Marangoni {
   void add_acceleration(const Stage& stage, const MutField& acceleration) const;
 };
