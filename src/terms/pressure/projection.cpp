@@ -35,7 +35,7 @@ void Projection::assemble(const Stage& s) {
   parallel_for(rows, [&](Index r) {
     const Index i = particle_of_[r];
     Index count = 0;
-    for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += row_of_[pairs.neighbour(k)] >= 0;
+    for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += mobility(s, i, pairs.neighbour(k)) > 0;
     matrix_.start[r + 1] = count;
   });
   for (Index r = 0; r < rows; ++r) matrix_.start[r + 1] += matrix_.start[r];
@@ -51,16 +51,16 @@ void Projection::assemble(const Stage& s) {
       Index out = matrix_.start[r];
       double sum = 0;
       pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
-        const Index column = row_of_[p.j];
-        if (column < 0) return;
-        const auto a = static_cast<float>(-scale * (s.volume[i] * s.volume[p.j]) * p.f);
-        matrix_.column[out] = column;
+        const double mobile = mobility(s, i, p.j);
+        if (mobile == 0) return;
+        const auto a = static_cast<float>(-scale * mobile * (s.volume[i] * s.volume[p.j]) * p.f);
+        matrix_.column[out] = row_of_[p.j];
         matrix_.off[out++] = a;
         sum += a;
       });
       // The exposed share counts even where the layer is pressed together and its own sum is full.
       const double missing = std::max(1 - s.diagonal[i], (1 - lattice.face_diagonal) * s.exposure[i]);
-      ghost_[r] = s.surface[i] * full * s.volume[i] * missing;
+      ghost_[r] = s.patch->liquid[i] ? s.surface[i] * full * s.volume[i] * missing : 0.0;
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });
@@ -78,6 +78,11 @@ void Projection::assemble(const Stage& s) {
       matrix_.diagonal[r] -= ghost_[r];
       ghost_[r] = 0;
     }
+}
+
+/// Mean 1 / m of a pair over that of the melt: what stays where it is has an infinite mass.
+double Projection::mobility(const Stage& s, Index i, Index j) const {
+  return row_of_[j] < 0 ? 0.0 : 0.5 * (s.patch->liquid[i] + s.patch->liquid[j]);
 }
 
 void Projection::divergence(const Stage& s, const ConstField& u, std::vector<double>& out) const {
@@ -124,18 +129,25 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
 
 void Projection::compression(const Stage& s, std::vector<double>& out) const {
   out.resize(particle_of_.size());
-  const double open = 1 - s.constants->lattice.face_fill;
+  const auto& lattice = s.constants->lattice;
+  const double open = 1 - lattice.face_fill;
+  const double full = 2 / (s.constants->density * lattice.second_moment) * lattice.laplacian;
   parallel_for(rows(), [&](Index r) {
     const Index i = particle_of_[r];
-    if (!s.constants->free_surface) {
-      out[r] = s.patch->wall[i] ? 0.0 : s.fill[i] - 1;
-      return;
+    if (s.patch->wall[i]) {
+      // Dummies lack neighbours where the box ends.
+      out[r] = std::max(0.0, s.fill[i] - 1);
+    } else if (!s.constants->free_surface) {
+      out[r] = s.fill[i] - 1;
+    } else {
+      // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything
+      // emptier than that is shape, not density.
+      const double excess = s.fill[i] + open * s.exposure[i] - 1;
+      const bool inside = s.surface[i] == 0 && s.fill[i] > 0.97;
+      out[r] = inside ? s.fill[i] - 1 : std::max(0.0, excess - kTolerated);
     }
-    // What the open side of a flat face lacks is added, so that a pressed surface layer shows; anything
-    // emptier than that is shape, not density.
-    const double excess = s.fill[i] + open * s.exposure[i] - 1;
-    const bool inside = s.surface[i] == 0 && s.fill[i] > 0.97;
-    out[r] = s.patch->wall[i] ? 0.0 : inside ? s.fill[i] - 1 : std::max(0.0, excess - kTolerated);
+    // Of what surrounds a fixed particle only the melt can give way.
+    if (!s.patch->liquid[i]) out[r] *= 2 * matrix_.diagonal[r] / (full * s.volume[i]);
   });
 }
 
@@ -148,19 +160,21 @@ solve::SolveReport Projection::solve(const Stage& s, const std::vector<double>& 
     rhs_[r] = -s.volume[i] * source[r] + ghost_[r] * s.surface_pressure[i];
     x_[r] = s.patch->pressure[i];
   });
-  const auto remove_means = [&](std::vector<double>& a) {
+  // A closed pocket: its source has no sum, its pressure no mean. Rows take up the sum by their coupling, for
+  // a fixed particle that hardly touches the melt cannot take a whole share.
+  const auto remove = [&](std::vector<double>& a, auto&& share) {
     group_sum_.assign(floating_ + 1, 0.0);
-    group_size_.assign(floating_ + 1, 0);
+    group_share_.assign(floating_ + 1, 0.0);
     for (Index r = 0; r < rows(); ++r) {
       group_sum_[group_[r]] += a[r];
-      ++group_size_[group_[r]];
+      group_share_[group_[r]] += share(r);
     }
     for (Index r = 0; r < rows(); ++r)
-      if (group_[r] > 0) a[r] -= group_sum_[group_[r]] / group_size_[group_[r]];
+      if (group_[r] > 0 && share(r) > 0) a[r] -= group_sum_[group_[r]] * share(r) / group_share_[group_[r]];
   };
-  if (floating_ > 0) remove_means(rhs_);
+  if (floating_ > 0) remove(rhs_, [&](Index r) { return matrix_.diagonal[r]; });
   const auto report = cg_.solve(matrix_, rhs_, x_, options.tolerance, options.max_iterations);
-  if (floating_ > 0) remove_means(x_);
+  if (floating_ > 0) remove(x_, [](Index) { return 1.0; });
   std::fill(s.patch->pressure.begin(), s.patch->pressure.end(), 0.0);
   parallel_for(rows(), [&](Index r) { s.patch->pressure[particle_of_[r]] = x_[r]; });
   return report;

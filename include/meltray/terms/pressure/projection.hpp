@@ -20,11 +20,13 @@ struct ProjectionOptions {
 };
 
 /// ISPH pressure: the Poisson equation (6) of the paper on the liquid particles and their solid neighbours,
-///   sum_j a_ij (p_i - p_j) + g_i (p_i - q_i) = -V_i S_i,  a_ij = -2 V_i V_j F_ij / rho,
+///   sum_j a_ij (p_i - p_j) + g_i (p_i - q_i) = -V_i S_i,  a_ij = -(1/m_i + 1/m_j) V_i V_j F_ij,
 /// where S is what the divergence of grad p / rho has to be. At a free surface the missing part of the kernel
 /// is filled by particles of pressure q ("ghost" diagonal, Nair & Tomar 2014): g_i = surface_i * (full sum of
-/// a - actual sum). Solid particles are rows with zero velocity (no flow through them); deeper solid is left
-/// out (zero normal derivative). With q uniform, p = q is an exact rest state of both surface entries.
+/// a - actual sum). Solid particles are rows with zero velocity (no flow through them) and infinite mass,
+/// with m = rho in the melt: they do not pass pressure on to each other, and a linear pressure is exact on a
+/// lattice up to walls and corners. Deeper solid is left out (zero normal derivative). With q uniform, p = q
+/// is an exact rest state of both surface entries.
 class Projection {
  public:
   /// Rows, matrix and ghost diagonal at the stage's geometry and surface.
@@ -34,7 +36,8 @@ class Projection {
   void divergence(const Stage& stage, const ConstField& u, std::vector<double>& out) const;
   /// -d_a v_b d_b v_a: what the motion of Lagrangian particles adds to the rate of change of div v.
   void divergence_rate(const Stage& stage, const ConstField& v, std::vector<double>& out) const;
-  /// Relative density error driving the drift correction: fill - 1, only compression near a free surface.
+  /// Relative density error driving the drift correction: fill - 1, only compression near a free surface and
+  /// in dummies.
   void compression(const Stage& stage, std::vector<double>& out) const;
   /// Solves for p with div(grad p / rho) = source (one entry per row), warm-started from and stored to the
   /// patch's pressure. Components without a free surface get the mean-zero solution.
@@ -46,11 +49,13 @@ class Projection {
   Index floating() const { return floating_; }
 
  private:
+  double mobility(const Stage& stage, Index i, Index j) const;
+
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
   std::vector<double> ghost_, anchor_, rhs_, x_;
-  std::vector<Index> group_, group_size_, scratch_;
-  std::vector<double> group_sum_;
+  std::vector<Index> group_, scratch_;
+  std::vector<double> group_sum_, group_share_;
   Index floating_ = 0;
   solve::ConjugateGradient cg_;
 };
