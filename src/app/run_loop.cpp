@@ -20,6 +20,9 @@ namespace meltray::app {
 namespace fs = std::filesystem;
 namespace {
 
+/// Bytes of a state without its particles: hits of the light, counters, the file's own tables.
+constexpr std::size_t kStateBesides = 1 << 20;
+
 bool same_or_before(double a, double b) {
   return a <= b + kSameTime * std::abs(b);
 }
@@ -256,6 +259,7 @@ void RunLoop::write_checkpoint(bool scheduled) {
   header.time = simulation_.time();
   header.step = simulation_.counters().steps;
   header.scheduled = scheduled;
+  header.expected_bytes = simulation_.particles().bytes() + kStateBesides;
   slots_.write(header, [&](Archive& a) {
     simulation_.archive(a);
     state_.archive(a);

@@ -41,19 +41,18 @@ class VoxelGrid {
 
   double depth() {
     drop_loose_metal();
-    const std::vector<std::int64_t> seeds = top_layer();
     std::int64_t lowest = n_[2];
     std::int64_t at = -1;
-    flood(
-        seeds, [this](std::int64_t v) { return fraction_[v] < kThreshold; },
-        [&](std::int64_t v) {
-          const std::int64_t k = v / (n_[0] * n_[1]);
-          // Of equally low voxels the emptier one: its ground is the deeper one.
-          if (k < lowest || (k == lowest && below(v) < below(at))) {
-            lowest = k;
-            at = v;
-          }
-        });
+    flood([this](auto&& seed) { for_top_layer(seed); },
+          [this](std::int64_t v) { return fraction_[v] < kThreshold; },
+          [&](std::int64_t v) {
+            const std::int64_t k = v / (n_[0] * n_[1]);
+            // Of equally low voxels the emptier one: its ground is the deeper one.
+            if (k < lowest || (k == lowest && below(v) < below(at))) {
+              lowest = k;
+              at = v;
+            }
+          });
     if (at < 0) return 0;
     const double z = origin_[2] + (static_cast<double>(lowest) + 0.5) * voxel_;
     double down = 0.5;  // at the lower edge of the region the void goes on
@@ -128,42 +127,45 @@ class VoxelGrid {
       }
   }
 
-  std::vector<std::int64_t> top_layer() const {
-    std::vector<std::int64_t> seeds;
-    for (std::int64_t v = (n_[2] - 1) * n_[1] * n_[0]; v < n_[2] * n_[1] * n_[0]; ++v) seeds.push_back(v);
-    return seeds;
+  template <class Seed>
+  void for_top_layer(Seed&& seed) const {
+    for (std::int64_t v = (n_[2] - 1) * n_[1] * n_[0]; v < n_[2] * n_[1] * n_[0]; ++v) seed(v);
   }
 
-  /// Metal that cannot be reached from solid or from the side or bottom of the region becomes void.
-  void drop_loose_metal() {
-    std::vector<std::int64_t> seeds;
+  /// Voxels of solid, at the sides and at the bottom.
+  template <class Seed>
+  void for_anchors(Seed&& seed) const {
     std::int64_t v = 0;
     for (std::int64_t k = 0; k < n_[2]; ++k)
       for (std::int64_t j = 0; j < n_[1]; ++j)
         for (std::int64_t i = 0; i < n_[0]; ++i, ++v) {
           const bool edge = k == 0 || i == 0 || i == n_[0] - 1 || (!flat_ && (j == 0 || j == n_[1] - 1));
-          if (edge || anchored_[v]) seeds.push_back(v);
+          if (edge || anchored_[v]) seed(v);
         }
-    std::vector<std::uint8_t> held(fraction_.size(), 0);
-    flood(
-        seeds, [this](std::int64_t u) { return fraction_[u] >= kThreshold; },
-        [&](std::int64_t u) { held[u] = 1; });
+  }
+
+  /// Metal that cannot be reached from solid or from the side or bottom of the region becomes void.
+  void drop_loose_metal() {
+    const auto held =
+        flood([this](auto&& seed) { for_anchors(seed); },
+              [this](std::int64_t u) { return fraction_[u] >= kThreshold; }, [](std::int64_t) {});
     for (std::size_t u = 0; u < fraction_.size(); ++u)
       if (!held[u]) fraction_[u] = std::min(fraction_[u], 0.49F);
   }
 
-  /// Visits every voxel that fulfils `inside` and is connected over faces to a seed that does.
-  template <class Inside, class Visit>
-  void flood(const std::vector<std::int64_t>& seeds, Inside&& inside, Visit&& visit) const {
+  /// Visits every voxel that fulfils `inside` and is connected over faces to a seed that does, and marks it
+  /// with 1 in the result.
+  template <class Seeds, class Inside, class Visit>
+  std::vector<std::uint8_t> flood(Seeds&& for_seeds, Inside&& inside, Visit&& visit) const {
     std::vector<std::uint8_t> seen(fraction_.size(), 0);
-    std::vector<std::int64_t> open;
+    std::vector<std::uint32_t> open;
     const auto push = [&](std::int64_t v) {
       if (seen[v] || !inside(v)) return;
       seen[v] = 1;
       visit(v);
-      open.push_back(v);
+      open.push_back(static_cast<std::uint32_t>(v));
     };
-    for (const auto s : seeds) push(s);
+    for_seeds(push);
     while (!open.empty()) {
       const std::int64_t v = open.back();
       open.pop_back();
@@ -175,6 +177,7 @@ class VoxelGrid {
       if (k > 0) push(v - n_[0] * n_[1]);
       if (k + 1 < n_[2]) push(v + n_[0] * n_[1]);
     }
+    return seen;
   }
 
   bool flat_;

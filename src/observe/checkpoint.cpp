@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <cstring>
 
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/files.hpp"
@@ -20,6 +19,7 @@ constexpr std::string_view kState = "state/";
 
 class SavingArchive final : public Archive {
  public:
+  explicit SavingArchive(std::size_t expected) : out(expected) {}
   bool loading() const override { return false; }
   void value(std::string_view name, double& v) override { out.scalar(place(name), v); }
   void value(std::string_view name, std::int64_t& v) override { out.scalar(place(name), v); }
@@ -97,7 +97,7 @@ void verify(const std::string& label, std::span<const std::byte> bytes) {
 
 void write_checkpoint(const fs::path& file, const CheckpointHeader& header,
                       const std::function<void(Archive&)>& save) {
-  SavingArchive archive;
+  SavingArchive archive(header.expected_bytes);
   archive.out.attribute("/", "schema_version", std::int64_t{kCheckpointSchema});
   archive.out.attribute("/", "units", std::string_view("SI"));
   archive.out.scalar("header/run_id", std::string_view(header.run_id));
@@ -109,10 +109,7 @@ void write_checkpoint(const fs::path& file, const CheckpointHeader& header,
   const auto image = archive.out.image();
   std::string block = block_text(kCheckpointSchema, image.size(), fnv1a(image));
   block.resize(kBlock, '\0');
-  std::vector<std::byte> bytes(kBlock + image.size());
-  std::memcpy(bytes.data(), block.data(), kBlock);
-  std::memcpy(bytes.data() + kBlock, image.data(), image.size());
-  replace_file(file, bytes);
+  replace_file(file, {std::as_bytes(std::span(block)), image});
 }
 
 Checkpoint open_checkpoint(const fs::path& file, const std::string& run_id) {

@@ -53,12 +53,14 @@ void sync_directory(const fs::path& directory) {
 
 }  // namespace
 
-void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
+void replace_file(const fs::path& path, std::initializer_list<std::span<const std::byte>> pieces) {
   fs::path part = path;
   part += ".part";
   Descriptor file(part, O_WRONLY | O_CREAT | O_TRUNC);
   if (file.get() < 0) fail("create", part, errno);
-  int error = write_all(file.get(), reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  int error = 0;
+  for (const auto bytes : pieces)
+    if (error == 0) error = write_all(file.get(), reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (error == 0 && ::fsync(file.get()) != 0) error = errno;
   if (::close(file.release()) != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(part.c_str(), path.c_str()) != 0) error = errno;
@@ -67,6 +69,10 @@ void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
     fail("write", path, error);
   }
   sync_directory(path.parent_path());
+}
+
+void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
+  replace_file(path, {bytes});
 }
 
 void replace_file(const fs::path& path, std::string_view text) {

@@ -105,17 +105,17 @@ std::string memory_name() {
   return fmt::format("meltray-image-{}", ++count);
 }
 
-hid_t memory_access() {
+hid_t memory_access(std::size_t expected = 0) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_fapl_core(access, std::size_t{1} << 20, 0);
+  H5Pset_fapl_core(access, std::max(expected, std::size_t{1} << 20), 0);
   return access;
 }
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer() {
+Hdf5Writer::Hdf5Writer(std::size_t expected) {
   silence();
-  Handle access(memory_access(), H5Pclose);
+  Handle access(memory_access(expected), H5Pclose);
   file_ = H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   require(file_ >= 0, "a file in memory");
 }
@@ -165,13 +165,19 @@ void Hdf5Writer::attribute(std::string_view object, std::string_view name, std::
   write_attribute(file_, object, name, v.data(), H5T_NATIVE_DOUBLE, space);
 }
 
-std::vector<std::byte> Hdf5Writer::image() {
+std::span<const std::byte> Hdf5Writer::image() {
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "a file in memory");
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
   require(size > 0, "a file in memory");
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  require(H5Fget_file_image(file_, bytes.data(), bytes.size()) == size, "a file in memory");
-  return bytes;
+  // H5Fget_file_image() would copy it; the handle of the driver for files in memory is where its buffer is.
+  void* handle = nullptr;
+  require(H5Fget_vfd_handle(file_, H5P_DEFAULT, &handle) >= 0 && handle != nullptr, "a file in memory");
+  std::byte* const bytes = *static_cast<std::byte**>(handle);
+  // What that function does besides: the file does not count as open for writing (superblock version 0).
+  constexpr std::size_t kVersion = 8, kStatusFlags = 20, kStatusSize = 4;
+  require(bytes[kVersion] == std::byte{0}, "a file in memory");
+  std::fill_n(bytes + kStatusFlags, kStatusSize, std::byte{0});
+  return {bytes, static_cast<std::size_t>(size)};
 }
 
 namespace {

@@ -112,37 +112,33 @@ Snapshots::Snapshots(fs::path run_folder, double time) : folder_(std::move(run_f
 }
 
 void Snapshots::write(const Particles& p, const SnapshotInfo& info) {
-  std::vector<float> x, v, temperature, pressure, stress;
   has_stress_ = !p.stress[0].empty();
-  std::vector<std::uint8_t> phase, resolidified, surface;
   std::vector<std::int32_t> id;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!is_material(p, i)) continue;
-    const Vec3 xi = position(p, i), vi = velocity(p, i);
-    for (int d = 0; d < 3; ++d) {
-      x.push_back(static_cast<float>(xi[d]));
-      v.push_back(static_cast<float>(vi[d]));
-    }
-    temperature.push_back(static_cast<float>(p.temperature[i]));
-    pressure.push_back(static_cast<float>(p.pressure[i]));
-    if (has_stress_) stress.push_back(von_mises(p, i));
-    phase.push_back(p.phase[i]);
-    resolidified.push_back(p.has(i, kResolidified) ? 1 : 0);
-    surface.push_back(info.on_surface != nullptr && i < info.on_surface->size() ? (*info.on_surface)[i] : 0);
-    id.push_back(static_cast<std::int32_t>(i));
-  }
-  constexpr auto packed = Hdf5Writer::Packing::compressed;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (is_material(p, i)) id.push_back(static_cast<std::int32_t>(i));
   Hdf5Writer out;
-  out.dataset("position", x, 3, packed);
-  out.dataset("velocity", v, 3, packed);
-  out.dataset("temperature", temperature, 1, packed);
-  out.dataset("pressure", pressure, 1, packed);
-  out.dataset("phase", phase, 1, packed);
-  out.dataset("resolidified", resolidified, 1, packed);
-  out.dataset("on_surface", surface, 1, packed);
-  out.dataset("id", id, 1, packed);
+  // One field at a time: a copy of all would be as large as the particles themselves.
+  const auto write = [&]<class T>(const char* name, std::size_t columns, T, auto&& value) {
+    std::vector<T> v;
+    v.reserve(columns * id.size());
+    for (const std::int32_t i : id)
+      for (std::size_t c = 0; c < columns; ++c)
+        v.push_back(static_cast<T>(value(static_cast<std::size_t>(i), c)));
+    out.dataset(name, v, columns, Hdf5Writer::Packing::compressed);
+  };
+  write("position", 3, 0.0f, [&](std::size_t i, std::size_t c) { return position(p, i)[c]; });
+  write("velocity", 3, 0.0f, [&](std::size_t i, std::size_t c) { return velocity(p, i)[c]; });
+  write("temperature", 1, 0.0f, [&](std::size_t i, std::size_t) { return p.temperature[i]; });
+  write("pressure", 1, 0.0f, [&](std::size_t i, std::size_t) { return p.pressure[i]; });
+  write("phase", 1, std::uint8_t{}, [&](std::size_t i, std::size_t) { return p.phase[i]; });
+  write("resolidified", 1, std::uint8_t{},
+        [&](std::size_t i, std::size_t) { return p.has(i, kResolidified); });
+  write("on_surface", 1, std::uint8_t{}, [&](std::size_t i, std::size_t) {
+    return info.on_surface != nullptr && i < info.on_surface->size() ? (*info.on_surface)[i] : 0;
+  });
+  out.dataset("id", id, 1, Hdf5Writer::Packing::compressed);
   if (has_stress_) {
-    out.dataset(kStress.name, stress, 1, packed);
+    write(kStress.name, 1, 0.0f, [&](std::size_t i, std::size_t) { return von_mises(p, i); });
     out.attribute(kStress.name, "units", std::string_view(kStress.unit));
   }
   out.attribute("position", "units", std::string_view("m"));

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "meltray/core/memory.hpp"
+
 namespace meltray {
 
 void Particles::add(const Vec3& position, double enthalpy, double m, double smoothing_length,
@@ -19,6 +21,20 @@ void Particles::add(const Vec3& position, double enthalpy, double m, double smoo
   phase.push_back(static_cast<std::uint8_t>(Phase::solid));
   flags.push_back(0);
   wall.push_back(wall_face);
+}
+
+void Particles::reserve(std::size_t n) {
+  for (int c = 0; c < dim; ++c) {
+    x[c].reserve(n);
+    v[c].reserve(n);
+  }
+  for (auto* a : {&h, &mass, &smoothing, &pressure, &temperature}) a->reserve(n);
+  for (auto* a : {&phase, &flags, &wall}) a->reserve(n);
+}
+
+std::size_t Particles::bytes() const {
+  return held_bytes(x) + held_bytes(v) + held_bytes(stress) +
+         held_bytes(h, density, mass, smoothing, pressure, temperature, phase, flags, wall);
 }
 
 void Particles::archive(Archive& a) {

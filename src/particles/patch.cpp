@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "meltray/core/collect.hpp"
+#include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
 
 namespace meltray {
@@ -18,15 +19,19 @@ bool moves(const Particles& p, Index i) {
 }  // namespace
 
 PatchSelector::PatchSelector(const CellGrid& grid, const Particles& particles) : grid_(grid) {
-  resting_.resize(grid.cells());
   const auto x = view(particles.x);
-  for (Index i = 0; i < static_cast<Index>(particles.size()); ++i) {
-    if (particles.has(i, kRemoved)) continue;
-    if (moves(particles, i))
-      moving_.push_back(i);
-    else
+  const auto count = static_cast<Index>(particles.size());
+  const auto rests = [&](Index i) { return !particles.has(i, kRemoved) && !moves(particles, i); };
+  std::vector<Index> in_cell(grid.cells(), 0);
+  for (Index i = 0; i < count; ++i)
+    if (rests(i)) ++in_cell[grid_.cell(x, i)];
+  resting_.resize(grid.cells());
+  for (Index cell = 0; cell < grid.cells(); ++cell) resting_[cell].reserve(in_cell[cell]);
+  for (Index i = 0; i < count; ++i)
+    if (rests(i))
       resting_[grid_.cell(x, i)].push_back(i);
-  }
+    else if (moves(particles, i))
+      moving_.push_back(i);
 }
 
 void PatchSelector::melted(const Particles& particles, Index i) {
@@ -144,6 +149,18 @@ void PatchSelector::fill(const Particles& particles, Patch& patch) {
   std::fill(patch.cell_start.begin() + next, patch.cell_start.end(), patch.size());
 
   reload(particles, patch);
+}
+
+std::size_t PatchSelector::bytes() const {
+  std::size_t n =
+      held_bytes(resting_, moving_, core_, marked_, moves_, moving_cell_, moving_sorted_, moving_start_);
+  for (const auto& cell : resting_) n += held_bytes(cell);
+  return n;
+}
+
+std::size_t Patch::bytes() const {
+  return held_bytes(global, cell_start, h, mass, smoothing, pressure, density, liquid, wall, elastic) +
+         held_bytes(x) + held_bytes(v) + held_bytes(stress);
 }
 
 void reload(const Particles& particles, Patch& patch) {

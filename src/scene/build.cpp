@@ -102,6 +102,12 @@ void for_sites(const Domain& domain, F&& f) {
       }
 }
 
+std::size_t count_in_bodies(const Domain& domain) {
+  std::size_t count = 0;
+  for_sites(domain, [&](const Vec3& x, std::uint64_t) { count += body_at(domain, x) != nullptr; });
+  return count;
+}
+
 void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
   const Domain& domain = scene.domain;
   const double mass = k.density * std::pow(k.spacing, k.dim);
@@ -127,19 +133,19 @@ void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& o
   });
 }
 
-void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
-  const Domain& domain = scene.domain;
+/// Calls f(point, face) for the dummies of the faces that are walls.
+template <class F>
+void for_dummies(const Domain& domain, const terms::SceneConstants& k, F&& f) {
   const int layers = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing)), dim = k.dim;
-  const double mass = k.density * std::pow(k.spacing, dim);
   std::array<std::int64_t, 3> count{1, 1, 1}, low{0, 0, 0}, high{1, 1, 1};
   for (int c = 0; c < dim; ++c) {
     count[c] = std::llround((domain.max[c] - domain.min[c]) / k.spacing);
     low[c] = 0;
     high[c] = count[c];
   }
-  for (int f = 0; f < 6; ++f) {
-    if (!face_exists(f, dim) || domain.faces[f].kind != FaceKind::wall) continue;
-    (f % 2 ? high : low)[face_axis(f, dim)] += f % 2 ? layers : -layers;
+  for (int face = 0; face < 6; ++face) {
+    if (!face_exists(face, dim) || domain.faces[face].kind != FaceKind::wall) continue;
+    (face % 2 ? high : low)[face_axis(face, dim)] += face % 2 ? layers : -layers;
   }
   for (std::int64_t z = low[2]; z < high[2]; ++z)
     for (std::int64_t y = low[1]; y < high[1]; ++y)
@@ -147,27 +153,40 @@ void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& 
         const std::array<std::int64_t, 3> n{x, y, z};
         int owner = -1;
         std::int64_t depth = 0;  // the face a dummy is farthest behind owns it
-        for (int f = 0; f < 6; ++f) {
-          if (!face_exists(f, dim) || domain.faces[f].kind != FaceKind::wall) continue;
-          const int c = face_axis(f, dim);
-          const std::int64_t behind = f % 2 ? n[c] - count[c] + 1 : -n[c];
+        for (int face = 0; face < 6; ++face) {
+          if (!face_exists(face, dim) || domain.faces[face].kind != FaceKind::wall) continue;
+          const int c = face_axis(face, dim);
+          const std::int64_t behind = face % 2 ? n[c] - count[c] + 1 : -n[c];
           if (behind > depth) {
             depth = behind;
-            owner = f;
+            owner = face;
           }
         }
         if (owner < 0) continue;
         Vec3 p = Vec3::Zero();
         for (int c = 0; c < dim; ++c)
           p[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
-        const Face& face = domain.faces[owner];
-        const double t =
-            face.thermal == ThermalKind::temperature ? face.temperature : scene.heat.initial_temperature;
-        out.add(p, scene.material.enthalpy(t), mass, k.smoothing, static_cast<std::uint8_t>(owner + 1));
-        const std::size_t i = out.size() - 1;
-        out.temperature[i] = t;
-        for (int c = 0; c < dim; ++c) out.v[c][i] = k.faces[owner].velocity[c];
+        f(p, owner);
       }
+}
+
+std::size_t count_dummies(const Domain& domain, const terms::SceneConstants& k) {
+  std::size_t count = 0;
+  for_dummies(domain, k, [&](const Vec3&, int) { ++count; });
+  return count;
+}
+
+void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
+  const double mass = k.density * std::pow(k.spacing, k.dim);
+  for_dummies(scene.domain, k, [&](const Vec3& x, int owner) {
+    const Face& face = scene.domain.faces[owner];
+    const double t =
+        face.thermal == ThermalKind::temperature ? face.temperature : scene.heat.initial_temperature;
+    out.add(x, scene.material.enthalpy(t), mass, k.smoothing, static_cast<std::uint8_t>(owner + 1));
+    const std::size_t i = out.size() - 1;
+    out.temperature[i] = t;
+    for (int c = 0; c < k.dim; ++c) out.v[c][i] = k.faces[owner].velocity[c];
+  });
 }
 
 /// Every particle fills its lattice site. With thermal expansion its mass follows from its temperature, that
@@ -218,6 +237,8 @@ terms::SceneConstants build_constants(const Scene& scene) {
 Particles build_particles(const Scene& scene, const terms::SceneConstants& constants) {
   Particles out;
   out.dim = constants.dim;
+  // Most particles of a weld sleep in these arrays: they are made as long as needed, and no longer.
+  out.reserve(count_in_bodies(scene.domain) + count_dummies(scene.domain, constants));
   add_bodies(scene, constants, out);
   if (out.size() == 0)
     throw UsageError("bodies: found no particle inside any body; allowed: bodies that overlap the box");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,6 +40,11 @@ Partitions initial_partitions(const Time& time) {
   const auto implicit = [](PartitionChoice c) { return c == PartitionChoice::implicit_; };
   return {implicit(time.conduction), implicit(time.viscosity), implicit(time.interface_viscosity),
           implicit(time.evaporation)};
+}
+
+/// True where a field has, at some particles, the values that follow one another in y.
+bool holds(const std::vector<double>& field, const std::vector<Index>& particles, const double* y) {
+  return std::all_of(particles.begin(), particles.end(), [&](Index i) { return field[i] == *y++; });
 }
 
 }  // namespace
@@ -120,6 +126,38 @@ std::size_t Model::crossings_begin() const {
   return elastic_begin() + elastic_size();
 }
 
+void Model::release() {
+  pairs = {};
+  patch = {};
+  viscous_explicit_ = viscous_implicit_ = {};
+  conduction_ = {};
+  projection = {};
+  acceleration_ = transport_ = all_forces_ = along_surface_ = solve_b_ = solve_x_ = at_rest_ = {};
+  stress_rate_ = {};
+  for (auto* a : {&heating_, &density_rate_, &surface_pressure_, &loss_slope_, &source_, &other_, &guess_,
+                  &solve_h_b_, &solve_h_x_})
+    *a = {};
+  if (acoustic_) acoustic_->release();
+  terms::release_fields(stage);
+}
+
+std::size_t Model::term_bytes() const {
+  const Terms& t = scene_.terms;
+  const std::size_t dim = constants_.dim, particles = stage.size();
+  const bool projected = flows() && !weakly_compressible(), viscous = t.viscosity || t.interface_viscosity;
+  // Coefficients of pairs: of the viscosities, of conduction, of the Poisson matrix with its columns.
+  const std::size_t of_pair = sizeof(float) * ((t.viscosity ? 1 : 0) + (t.interface_viscosity ? dim : 0)) +
+                              (t.conduction ? sizeof(double) : 0) +
+                              (projected ? sizeof(float) + sizeof(Index) : 0);
+  // Fields: rates, and of each linear system its diagonal, the solver's vectors, right-hand side and
+  // solution.
+  const std::size_t of_particle = (flows() ? dim : 0) + (weakly_compressible() ? 1 : 0) +
+                                  (shifting_.coefficient > 0 ? dim : 0) + (viscous ? 5 * dim + 5 : 0) +
+                                  (stage.heated.empty() ? 0 : 1) + (t.conduction ? 10 : 0) +
+                                  (projected ? 12 : 0);
+  return pairs.pairs() * of_pair + particles * of_particle * sizeof(double);
+}
+
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
   const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
   const int dim = constants_.dim;
@@ -135,7 +173,6 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
   for (std::size_t k = 0; k < nh; ++k) y[h + k] = patch.h[stage.heated[k]];
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
   if (has_elastic_solid()) pack_elastic(y);
-  last_y_.assign(y.begin(), y.begin() + crossings_begin());
 
   const Time& time = scene_.time;
   fields.clear();
@@ -203,15 +240,36 @@ void Model::update_surface() {
   implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = marangoni_valid_ = false;
 }
 
+/// True where the patch's positions are those of y.
+bool Model::holds_positions(const double* y) const {
+  const std::size_t nm = flows() ? stage.moving.size() : 0, ne = stage.elastic.size();
+  const double* const elastic = y + elastic_begin();
+  for (int c = 0; c < constants_.dim; ++c)
+    if ((nm > 0 && !holds(patch.x[c], stage.moving, y + c * nm)) ||
+        !holds(patch.x[c], stage.elastic, elastic + c * ne))
+      return false;
+  return true;
+}
+
+/// The same of velocities, densities and stresses.
+bool Model::holds_rest(const double* y) const {
+  const int dim = constants_.dim;
+  const std::size_t nm = flows() ? stage.moving.size() : 0, ne = stage.elastic.size();
+  const double *v = y + dim * nm, *elastic = y + elastic_begin() + dim * ne;
+  for (int c = 0; c < dim; ++c, v += nm, elastic += ne)
+    if ((nm > 0 && !holds(patch.v[c], stage.moving, v)) || !holds(patch.v[c], stage.elastic, elastic))
+      return false;
+  if (nm > 0 && weakly_compressible() && !holds(patch.density, stage.moving, v)) return false;
+  if (ne == 0) return true;
+  if (!holds(patch.density, stage.elastic, elastic)) return false;
+  for (int c = 0; c < symmetric_count(dim); ++c)
+    if (!holds(patch.stress[c], stage.elastic, elastic += ne)) return false;
+  return true;
+}
+
 void Model::evaluate(double t, const double* y) {
-  const std::size_t n = crossings_begin(), nm = flows() ? stage.moving.size() : 0, h = enthalpy_begin(),
-                    e = elastic_begin(), ne = stage.elastic.size();
-  const auto same = [&](std::size_t begin, std::size_t end) {
-    return std::equal(y + begin, y + end, last_y_.begin() + static_cast<std::ptrdiff_t>(begin));
-  };
-  const bool still = same(0, constants_.dim * nm) && same(e, e + constants_.dim * ne), same_h = same(h, e);
-  if (still && same(constants_.dim * nm, h) && same_h && same(e, n) && t == stage.t) return;
-  last_y_.assign(y, y + n);
+  const bool still = holds_positions(y), same_h = holds(patch.h, stage.heated, y + enthalpy_begin());
+  if (still && same_h && holds_rest(y) && t == stage.t) return;
   stage.t = t;
   unpack(y);
   if (!same_h)
@@ -261,7 +319,7 @@ void Model::update_surface_pressure() {
 terms::Rates Model::cleared_rates() {
   const Index n = stage.size();
   for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(n, 0.0);
-  heating_.assign(n, 0.0);
+  heating_.assign(stage.heated.empty() ? 0 : n, 0.0);
   counted_force_ = Vec3::Zero();
   return {view(acceleration_), heating_.data()};
 }

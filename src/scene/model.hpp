@@ -47,6 +47,8 @@ class Model : public OdeProblem {
   /// False in scenes whose sums over pairs are all made by the acoustic pass: they have no list of pairs, and
   /// no surface besides.
   bool needs_pairs() const;
+  /// Gives back the memory of lists and patch, which have to be made anew for the next step.
+  void release();
   /// The pairs of a patch that has been selected anew and whose stage is prepared: `skin` [m] as in the list,
   /// periods of the box [m].
   void find_pairs(double skin, const std::array<double, 3>& period);
@@ -85,6 +87,8 @@ class Model : public OdeProblem {
   bool flows() const { return scene_.terms.pressure; }
   bool weakly_compressible() const { return acoustic_.has_value(); }
   std::size_t acoustic_bytes() const { return acoustic_ ? acoustic_->bytes() : 0; }
+  /// Bytes of what the terms of a step hold besides, once all of them have been at work.
+  std::size_t term_bytes() const;
   bool has_elastic_solid() const { return elastic_.has_value(); }
   /// One projection after each step, with all geometry frozen over the step.
   bool projects_steps() const {
@@ -127,6 +131,8 @@ class Model : public OdeProblem {
   void count_solve(const solve::SolveReport& report, double t);
   terms::ViscousChoice viscous(bool implicit_part) const;
   bool needs_surface() const;
+  bool holds_positions(const double* y) const;
+  bool holds_rest(const double* y) const;
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
   void add_frozen_marangoni(const MutField& acceleration);
@@ -165,7 +171,6 @@ class Model : public OdeProblem {
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;
   std::vector<double> guess_, solve_h_b_, solve_h_x_;
-  std::vector<double> last_y_;  ///< state that stage and patch stand for
   bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false,
        marangoni_valid_ = false;
 };

@@ -106,7 +106,8 @@ std::string Model::blame(Index i, double dt) {
   if (weakly_compressible()) {
     acoustic_->evaluate(stage);
     pull("pressure", [&](auto& a) { acoustic_->add_pressure_force(stage, a); });
-    pull("surface force", [&](auto& a) { acoustic_->force.add_surface_force(stage, a); });
+    if (needs_surface())
+      pull("surface force", [&](auto& a) { acoustic_->force.add_surface_force(stage, a); });
     if (acoustic_->artificial.alpha > 0)
       pull("artificial viscosity", [&](auto& a) { acoustic_->add_artificial_viscosity(stage, a); });
   } else {

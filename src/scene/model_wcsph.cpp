@@ -57,7 +57,7 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   acoustic_->evaluate(stage);
   acoustic_->add_density_rate(stage, rates.density);
   acoustic_->add_pressure_force(stage, rates.acceleration);
-  acoustic_->force.add_surface_force(stage, rates.acceleration);
+  if (needs_surface()) acoustic_->force.add_surface_force(stage, rates.acceleration);
   crossings.pressure = force_gained();
   if (acoustic_->artificial.alpha > 0) {
     acoustic_->add_artificial_viscosity(stage, rates.acceleration);

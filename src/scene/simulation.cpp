@@ -53,7 +53,8 @@ void Simulation::Impl::select() {
     if (!written) reload(particles, model.patch);
     if (model.weakly_compressible()) return;  // nothing melted: the stage stands as well
   } else {
-    if (everything)
+    // Without heat nothing happens away from the melt.
+    if (everything && model.needs_pairs())
       selector.select_all(particles, model.patch);
     else
       selector.select_near_melt(particles,
@@ -81,7 +82,7 @@ void Simulation::Impl::select() {
   model.stage.heat.assign(n, 0);
   for (Index i = 0; i < n && scene.exchanges_heat(); ++i)
     model.stage.heat[i] = !model.patch.wall[i] && (extra[i] || model.patch.liquid[i] || wall_of_melt[i]);
-  terms::prepare_stage(model.stage);
+  terms::prepare_stage(model.stage, model.needs_pairs());
   model.find_pairs(skin(scene) * constants.spacing, selector.grid().period());
   if (!everything) {
     for (Index g : in_state_list) in_state[g] = 0;
@@ -111,7 +112,7 @@ void Simulation::Impl::prepare() {
     laser->deposit(model.stage, model.laser_power);
     deposited = true;
   }
-  if (model.needs_pairs()) mark_surface();
+  if (model.needs_pairs()) mark_surface(model.stage.surface);
   prepared = true;
 }
 
@@ -205,7 +206,7 @@ void Simulation::Impl::check(const StepReport& report) {
       "pressure {:.4g} Pa",
       p.global[first], report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
       p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first),
-      p.pressure[first], model.stage.surface_pressure[first]);
+      p.pressure[first], model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
   const Index particle = p.global[first];
   lists_valid = false;
   select();
@@ -245,11 +246,11 @@ void Simulation::Impl::update_temperatures() {
 }
 
 /// Remembers who is on the surface, for output.
-void Simulation::Impl::mark_surface() {
+void Simulation::Impl::mark_surface(const std::vector<double>& weight) {
   for (Index g : surface_list) on_surface[g] = 0;
   surface_list.clear();
   for (Index i = 0; i < model.patch.size(); ++i)
-    if (model.stage.surface[i] > 0.5) {
+    if (weight[i] > 0.5) {
       on_surface[model.patch.global[i]] = 1;
       surface_list.push_back(model.patch.global[i]);
     }
@@ -258,16 +259,9 @@ void Simulation::Impl::mark_surface() {
 /// The surface of a scene whose steps need none, for output: nothing that steps rest on changes.
 void Simulation::Impl::find_surface() {
   if (model.needs_pairs() || !prepared) return;
-  terms::Stage& stage = model.stage;
-  sph::PairList list;
-  list.build(model.patch, selector.grid(), 0, extra);
-  list.refresh(model.patch, constants.kernel);
-  const std::vector<std::uint8_t> loose = stage.loose;
-  stage.pairs = &list;
-  terms::compute_surface(stage);
-  stage.pairs = &model.pairs;
-  stage.loose = loose;
-  mark_surface();
+  std::vector<double> weight;
+  terms::find_surface_weights(model.stage, selector.grid(), weight);
+  mark_surface(weight);
 }
 
 }  // namespace meltray::scene

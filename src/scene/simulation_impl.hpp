@@ -53,7 +53,7 @@ struct Simulation::Impl {
   StepInfo step(double t_stop);
   void note_motion(double dt);
   void update_temperatures();
-  void mark_surface();
+  void mark_surface(const std::vector<double>& weight);
   void find_surface();
   void check(const StepReport& report);
   void book(const StepReport& report);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meltray/core/memory.hpp"
 #include "scene/simulation_impl.hpp"
 
 namespace meltray::scene {
@@ -129,18 +130,27 @@ std::vector<StepLimit> Simulation::step_limits() {
 }
 
 std::vector<std::pair<std::string, std::size_t>> Simulation::memory() const {
-  const Particles& p = impl_->particles;
-  const int stresses = p.stress[0].empty() ? 0 : symmetric_count(p.dim);
-  return {{"particles", p.size() * (2 * p.dim + 5 + stresses) * sizeof(double) + 3 * p.size()},
-          {"pair lists", impl_->model.pairs.bytes()},
-          {"acoustic pass", impl_->model.acoustic_bytes()},
-          {"bulk conduction", impl_->bulk.bytes()},
-          {"state vectors", impl_->y.capacity() * sizeof(double) * 20}};
+  const Impl& s = *impl_;
+  const std::size_t entries = s.model.crossings_begin() + terms::Crossings::kCount;
+  return {{"particles", s.particles.bytes()},
+          {"cells", s.selector.bytes() + held_bytes(s.on_surface, s.in_state)},
+          {"patch and stage", s.model.patch.bytes() + s.model.stage.bytes()},
+          {"pair lists", s.model.pairs.bytes()},
+          {"acoustic pass", s.model.acoustic_bytes()},
+          {"terms", s.model.term_bytes()},
+          {"bulk conduction", s.bulk.bytes()},
+          {"state vectors", entries * sizeof(double) + s.integrator.bytes(entries)}};
 }
 
 void Simulation::archive(Archive& a) {
   Impl& s = *impl_;
   s.begin();
+  // The file stands in memory before it is written, and all of this is built anew.
+  s.lists_valid = s.prepared = false;
+  s.model.release();
+  s.bulk = {};
+  s.integrator.release();
+  s.y = {};
   s.particles.archive(a);
   a.value("time", s.time);
   a.value("next_bulk", s.next_bulk);

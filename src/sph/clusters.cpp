@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/sph/pairs.hpp"
 
@@ -69,11 +70,12 @@ void ClusterSet::sort(const Patch& patch, const std::vector<std::uint8_t>& chose
 
   const Index columns = columns_[0] * columns_[1];
   std::vector<Index> in_column(columns, 0);
-  of_column_.clear();
+  std::vector<std::pair<Index, Index>> of_column;
+  of_column.reserve(count);
   for (Index i = 0; i < patch.size(); ++i)
     if (chosen[i] == kind) {
-      of_column_.emplace_back(column_of(position(i)), i);
-      ++in_column[of_column_.back().first];
+      of_column.emplace_back(column_of(position(i)), i);
+      ++in_column[of_column.back().first];
     }
   column_start_.assign(columns + 1, 0);
   for (Index c = 0; c < columns; ++c)
@@ -81,7 +83,7 @@ void ClusterSet::sort(const Patch& patch, const std::vector<std::uint8_t>& chose
   const Index octets = column_start_[columns];
   particle_.assign(static_cast<std::size_t>(octets) * kLanes, -1);
   std::vector<Index> filled(columns, 0);
-  for (const auto& [column, i] : of_column_)
+  for (const auto& [column, i] : of_column)
     particle_[static_cast<std::size_t>(column_start_[column]) * kLanes + filled[column]++] = i;
   const auto height = [&](Index i) { return wrapped(patch.x[up][i], period_[up]); };
 #pragma omp parallel for schedule(dynamic, 16)
@@ -114,11 +116,13 @@ void ClusterSet::pack(const std::vector<double>& field, double empty, AlignedDou
   parallel_for(slots(), [&](Index s) { out[s] = particle_[s] < 0 ? empty : field[particle_[s]]; });
 }
 
+void ClusterSet::close() {
+  for (auto& p : position_) p = {};
+  box_ = {};
+}
+
 std::size_t ClusterSet::bytes() const {
-  std::size_t n = particle_.capacity() * sizeof(Index) + column_start_.capacity() * sizeof(Index) +
-                  box_.capacity() * sizeof(Box) + of_column_.capacity() * sizeof(of_column_[0]);
-  for (const auto& p : position_) n += p.capacity() * sizeof(double);
-  return n;
+  return held_bytes(particle_, column_start_, box_) + held_bytes(position_);
 }
 
 /// Adds the lists of the groups of one octet of rows to the block.
@@ -215,14 +219,13 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
 
 void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, double reach) {
   const Index octets = rows.octets(), blocks = (octets + kOctetsPerBlock - 1) / kOctetsPerBlock;
-  blocks_.resize(blocks);
+  octet_ = {};
+  std::vector<Block> found(blocks);
   neighbours_.assign(rows.slots(), 0);
   with_dim(rows.dim_, [&](auto d) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (Index b = 0; b < blocks; ++b) {
-      Block& block = blocks_[b];
-      block.count.clear();
-      block.octet.clear();
+      Block& block = found[b];
       for (Index o = b * kOctetsPerBlock; o < std::min(octets, (b + 1) * kOctetsPerBlock); ++o)
         if (sources.octets() > 0)
           search<d>(rows, sources, o, reach, block);
@@ -232,7 +235,7 @@ void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, doubl
   });
   start_.assign(rows.groups() + 1, 0);
   Index group = 0;
-  for (const Block& b : blocks_)
+  for (const Block& b : found)
     for (const Index n : b.count) {
       start_[group + 1] = start_[group] + n;
       ++group;
@@ -240,7 +243,7 @@ void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, doubl
   octet_.resize(start_[group]);
 #pragma omp parallel for schedule(static)
   for (Index b = 0; b < blocks; ++b)
-    std::copy(blocks_[b].octet.begin(), blocks_[b].octet.end(),
+    std::copy(found[b].octet.begin(), found[b].octet.end(),
               octet_.begin() + start_[b * kOctetsPerBlock * (kLanes / kGroupRows)]);
 }
 

@@ -1,33 +1,36 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
+
+#include "meltray/core/memory.hpp"
 
 namespace meltray::sph {
 
 namespace {
 
 /// Cells of the patch handled by one task; fixed, so that the list does not depend on the number of threads.
-constexpr Index kCellsPerBlock = 32;
+constexpr Index kCellsPerBlock = 32, kCellsPerBlockOfPiece = 8;
 /// Widens the reach of the search by more than single precision loses over a cell and its neighbours.
 constexpr float kRounding = 1.00001f;
 
 }  // namespace
 
-void PairList::search(const Patch& patch, const CellGrid& grid, double skin,
-                      const std::vector<std::uint8_t>& wanted) {
-  const Index cells = static_cast<Index>(patch.cells.size());
-  const Index blocks = (cells + kCellsPerBlock - 1) / kCellsPerBlock;
+void PairList::search(const Patch& patch, const CellGrid& grid, double skin, std::span<const Index> cells,
+                      Index block_cells) {
+  const auto count = static_cast<Index>(cells.size());
+  const Index blocks = (count + block_cells - 1) / block_cells;
+  const std::vector<std::uint8_t>& wanted = wanted_;
   blocks_.resize(blocks);
   with_dim(dim_, [&](auto d) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (Index b = 0; b < blocks; ++b) {
-      const Index last_of_block = std::min(cells, (b + 1) * kCellsPerBlock);
-      for (Index c = b * kCellsPerBlock; c < last_of_block; ++c) {
-        const Index cell = patch.cells[c];
+      for (const Index cell :
+           cells.subspan(b * block_cells, std::min(block_cells, count - b * block_cells))) {
         const Index first = patch.cell_start[cell], last = patch.cell_start[cell + 1];
         if (std::none_of(wanted.begin() + first, wanted.begin() + last, [](auto w) { return w != 0; }))
           continue;
@@ -94,7 +97,10 @@ void PairList::search_row(const Patch& patch, Index i, Index origin, double skin
   else
     test(std::false_type{});
 
-  if (block.entries.size() < block.used + n) block.entries.resize(2 * block.used + n);
+  if (const std::size_t least = block.used + n; block.entries.size() < least) {
+    block.entries.reserve(least + least / 8);
+    block.entries.resize(least + least / 8);
+  }
   Index* const out = block.entries.data() + block.used;
   Index found = 0;
   // Eight bytes looked at together: nine candidates of ten are too far away.
@@ -112,20 +118,24 @@ void PairList::search_row(const Patch& patch, Index i, Index origin, double skin
   block.count.push_back(found);
 }
 
-void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
-                     const std::vector<std::uint8_t>& extra) {
-  dim_ = patch.dim;
-  period_ = grid.period();
-  const Index n = patch.size();
+void PairList::clear_blocks() {
   for (Block& b : blocks_) {
     b.row.clear();
     b.count.clear();
     b.used = 0;
   }
+}
+
+void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
+                     const std::vector<std::uint8_t>& extra) {
+  dim_ = patch.dim;
+  period_ = grid.period();
+  const Index n = patch.size();
+  clear_blocks();
 
   wanted_.assign(n, 0);
   for (Index i = 0; i < n; ++i) wanted_[i] = patch.liquid[i] || (!extra.empty() && extra[i]);
-  search(patch, grid, skin, wanted_);
+  search(patch, grid, skin, patch.cells, kCellsPerBlock);
 
   next_to_melt_.assign(n, 0);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -146,15 +156,39 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
     wanted_[i] = next_to_melt_[i] && !wanted_[i];
     more = more || wanted_[i];
   }
-  if (more) search(patch, grid, skin, wanted_);
+  if (more) search(patch, grid, skin, patch.cells, kCellsPerBlock);
 
   next_to_wall_.assign(n, 0);
   start_.assign(n + 1, 0);
   for (const Block& b : blocks_)
     for (std::size_t r = 0; r < b.row.size(); ++r) start_[b.row[r] + 1] = b.count[r];
   for (Index i = 0; i < n; ++i) start_[i + 1] += start_[i];
-  const std::size_t pairs = start_[n];
-  j_.resize(pairs);
+  resize_anew(j_, start_[n]);
+  copy_blocks(patch);
+}
+
+void PairList::build_piece(const Patch& patch, const CellGrid& grid, double skin, Index first, Index last) {
+  dim_ = patch.dim;
+  period_ = grid.period();
+  const Index n = patch.size(), begin = patch.cell_start[first], end = patch.cell_start[last];
+  clear_blocks();
+  wanted_.resize(n);
+  next_to_wall_.resize(n);
+  start_.resize(n + 1);
+  for (Index i = begin; i < end; ++i) wanted_[i] = !patch.wall[i];
+  const auto from = std::lower_bound(patch.cells.begin(), patch.cells.end(), first);
+  search(patch, grid, skin, {from, std::lower_bound(from, patch.cells.end(), last)}, kCellsPerBlockOfPiece);
+
+  std::fill(start_.begin() + begin, start_.begin() + end + 1, 0);
+  for (const Block& b : blocks_)
+    for (std::size_t r = 0; r < b.row.size(); ++r) start_[b.row[r] + 1] = b.count[r];
+  for (Index i = begin; i < end; ++i) start_[i + 1] += start_[i];
+  resize_anew(j_, start_[end]);
+  copy_blocks(patch);
+}
+
+/// The rows that the blocks have found, to their places in the list.
+void PairList::copy_blocks(const Patch& patch) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
@@ -179,9 +213,9 @@ void PairList::refresh(const Patch& patch, KernelType kernel, const std::vector<
 }
 
 void PairList::refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some) {
-  for (int c = 0; c < dim_; ++c) dx_[c].resize(pairs());
-  w_.resize(pairs());
-  f_.resize(pairs());
+  for (int c = 0; c < dim_; ++c) resize_anew(dx_[c], pairs());
+  resize_anew(w_, pairs());
+  resize_anew(f_, pairs());
   const bool periodic = std::any_of(period_.begin(), period_.begin() + dim_, [](double p) { return p > 0; });
   with_dim(dim_, [&](auto d) {
     with_kernel<d>(kernel, [&](auto k) {
@@ -231,9 +265,10 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
 }
 
 std::size_t PairList::bytes() const {
-  return j_.capacity() * sizeof(Index) +
-         (dx_[0].capacity() + dx_[1].capacity() + dx_[2].capacity() + w_.capacity() + f_.capacity()) *
-             sizeof(float);
+  std::size_t n = held_bytes(start_, j_, w_, f_, next_to_melt_, next_to_wall_, wanted_) + held_bytes(dx_);
+  for (const Block& b : blocks_)
+    n += held_bytes(b.row, b.count, b.entries, b.candidate, b.candidate_h, b.near);
+  return n;
 }
 
 }  // namespace meltray::sph

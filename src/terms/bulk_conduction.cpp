@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "meltray/core/memory.hpp"
 #include "meltray/terms/conduction.hpp"
 
 namespace meltray::terms {
@@ -17,25 +18,27 @@ constexpr double kExplicitShare = 0.5;  ///< of the Gershgorin limit per explici
 void BulkConduction::build(const SceneConstants& constants, PatchSelector& selector,
                            const Particles& particles, double rest_temperature) {
   const auto rests = [&](Index g) { return std::abs(particles.temperature[g] - rest_temperature) <= kAwake; };
-  awake_.clear();
+  std::vector<Index> awake;
   for (Index i = 0; i < static_cast<Index>(particles.size()); ++i)
     if (!rests(i) && !particles.is_liquid(i) && !particles.is_wall(i) && !particles.has(i, kRemoved))
-      awake_.push_back(i);
-  selector.select_around(particles, awake_, patch_);
+      awake.push_back(i);
+  selector.select_around(particles, awake, patch_);
   const Index n = patch_.size();
-  row_wanted_.resize(n);
-  for (Index i = 0; i < n; ++i) row_wanted_[i] = !patch_.wall[i];
-  pairs_.build(patch_, selector.grid(), 0.0, row_wanted_);
-  assemble(constants, rests);
+  std::vector<std::uint8_t> wanted(n);
+  for (Index i = 0; i < n; ++i) wanted[i] = !patch_.wall[i];
+  sph::PairList pairs;  // not kept: most of the warm particles of a weld are rows here
+  pairs.build(patch_, selector.grid(), 0.0, wanted);
+  assemble(constants, pairs, rests);
 }
 
 /// Conductances of the pairs of which one at least is awake; the others are left out of the rows.
 template <class Rests>
-void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
+void BulkConduction::assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests) {
   const Index n = patch_.size();
   const auto& material = constants.material;
-  neighbour_.resize(pairs_.pairs());
-  k_.resize(pairs_.pairs());
+  resize_anew(neighbour_, pairs.pairs());
+  resize_anew(k_, pairs.pairs());
+  row_begin_.resize(n);
   row_end_.resize(n);
   lambda_.resize(n);
   missing_.resize(n);
@@ -52,17 +55,17 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
       const auto volume = [&](Index i) { return patch_.mass[i] / constants.density; };
       const auto distance = [&](Index i, Index j) {
         double r2 = 0;
-        for (int c = 0; c < D; ++c) r2 += std::pow(pairs_.nearest(c, patch_.x[c][i] - patch_.x[c][j]), 2);
+        for (int c = 0; c < D; ++c) r2 += std::pow(pairs.nearest(c, patch_.x[c][i] - patch_.x[c][j]), 2);
         return std::sqrt(r2);
       };
       // Particles at rest count as inside: their neighbours need not all be in the patch.
       parallel_for(n, [&](Index i) {
         missing_[i] = 0;
         if (patch_.wall[i] || patch_.liquid[i] || at_rest_[i]) return;
-        if (surrounded(pairs_, i, constants.lattice)) return;
+        if (surrounded(pairs, i, constants.lattice)) return;
         double sum = volume(i) * Kernel::w(0.0, 1 / patch_.smoothing[i]);
-        for (Index q = pairs_.begin(i); q < pairs_.end(i); ++q) {
-          const Index j = pairs_.neighbour(q);
+        for (Index q = pairs.begin(i); q < pairs.end(i); ++q) {
+          const Index j = pairs.neighbour(q);
           if (!patch_.wall[j])
             sum += volume(j) * Kernel::w(distance(i, j), 2 / (patch_.smoothing[i] + patch_.smoothing[j]));
         }
@@ -70,10 +73,10 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
       });
       parallel_for(n, [&](Index i) {
         const double vi = volume(i), li = lambda_[i], hi = patch_.smoothing[i];
-        Index out = pairs_.begin(i);
-        const Index last = patch_.liquid[i] ? out : pairs_.end(i);  // melt belongs to the state
+        Index out = row_begin_[i] = pairs.begin(i);
+        const Index last = patch_.liquid[i] ? out : pairs.end(i);  // melt belongs to the state
         for (Index q = out; q < last; ++q) {
-          const Index j = pairs_.neighbour(q);
+          const Index j = pairs.neighbour(q);
           if (patch_.wall[j] || patch_.liquid[j] || (at_rest_[i] && at_rest_[j])) continue;
           const double f = Kernel::f(distance(i, j), 2 / (hi + patch_.smoothing[j]));
           if (f == 0) continue;
@@ -88,7 +91,7 @@ void BulkConduction::assemble(const SceneConstants& constants, Rests&& rests) {
   });
   rate_ = parallel_max(n, 0.0, [&](std::ptrdiff_t i) {
     double sum = 0;
-    for (Index q = pairs_.begin(i); q < row_end_[i]; ++q) sum -= k_[q];
+    for (Index q = row_begin_[i]; q < row_end_[i]; ++q) sum -= k_[q];
     return sum / patch_.mass[i] * material.temperature_slope(patch_.h[i]);
   });
 }
@@ -115,7 +118,7 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
       const int si = skip_[i];
       const Index last = row_end_[i];
 #pragma omp simd reduction(+ : sum)
-      for (Index q = pairs_.begin(i); q < last; ++q) {
+      for (Index q = row_begin_[i]; q < last; ++q) {
         const Index j = neighbour_[q];
         const int both = si + skip_[j];
         sum += both < 2 ? static_cast<double>(k_[q]) * (ti - temperature_[j]) : 0.0;
@@ -132,8 +135,8 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
 }
 
 std::size_t BulkConduction::bytes() const {
-  return pairs_.bytes() + k_.capacity() * sizeof(float) + neighbour_.capacity() * sizeof(Index) +
-         patch_.global.capacity() * 140;
+  return patch_.bytes() + held_bytes(neighbour_, row_begin_, row_end_, k_, lambda_, missing_, temperature_,
+                                     gain_, at_rest_, skip_);
 }
 
 }  // namespace meltray::terms

@@ -3,13 +3,15 @@
 
 #include <cmath>
 
+#include "meltray/core/memory.hpp"
+
 namespace meltray::terms {
 
 void ConductionOperator::assemble(const Stage& s) {
   const Index n = s.size();
   const auto& pairs = *s.pairs;
   conductivity_.resize(n);
-  k_.resize(pairs.pairs());
+  resize_anew(k_, pairs.pairs());
   wall_slope_.assign(n, 0.0);
   wall_power_.assign(n, 0.0);
   parallel_for(n, [&](Index i) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "meltray/core/memory.hpp"
+
 namespace meltray::terms {
 
 namespace {
@@ -35,12 +37,12 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
   e2_sum_.assign(n, 0.0);
   if (choice.physical) {
     mu_.resize(n);
-    c_.resize(pairs.pairs());
+    resize_anew(c_, pairs.pairs());
     parallel_for(n, [&](Index i) { mu_[i] = s.constants->material.viscosity(s.temperature[i]); });
   }
   if (choice.interface) {
     alpha_.resize(n);
-    for (int c = 0; c < s.constants->dim; ++c) e_[c].resize(pairs.pairs());
+    for (int c = 0; c < s.constants->dim; ++c) resize_anew(e_[c], pairs.pairs());
     parallel_for(n, [&](Index i) {
       double g = 0;
       for (int c = 0; c < s.constants->dim; ++c) g += s.grad_c[c][i] * s.grad_c[c][i];

@@ -83,11 +83,6 @@ struct ArkodeDriver::Callbacks {
       } else {
         N_VConst(0.0, f);
       }
-      if (d.parts_.has_implicit && !d.implicit_rates_) {
-        d.problem_->implicit_rate(t, entries(y), entries(d.scratch_.get()));
-        ++d.counters_.implicit_evals;
-        N_VLinearSum(1.0, f, 1.0, d.scratch_.get(), f);
-      }
     });
   }
 
@@ -100,7 +95,8 @@ struct ArkodeDriver::Callbacks {
   }
 
   static int weights(N_Vector, N_Vector w, void* user) {
-    N_VScale(1.0, self(user).weights_, w);
+    const ArkodeDriver& d = self(user);
+    d.space_.norm().weights(entries(d.y_), entries(w));
     return 0;
   }
 
@@ -155,9 +151,8 @@ ArkodeDriver::ArkodeDriver(SUNContext context, VectorSpace& space, const Tableau
     : space_(space),
       tableau_(tableau),
       parts_(parts),
-      explicit_rates_(tableau.explicit_half &&
-                      (parts.has_explicit || !tableau.implicit_half || !parts.has_implicit)),
-      implicit_rates_(tableau.implicit_half && (parts.has_implicit || !tableau.explicit_half)),
+      explicit_rates_(tableau.explicit_half && (parts.has_explicit || !parts.has_implicit)),
+      implicit_rates_(parts.has_implicit || !tableau.explicit_half),
       estimate_error_(estimate_error),
       counters_(counters),
       scratch_(space.take()) {
@@ -235,11 +230,10 @@ void ArkodeDriver::create_stage_solver(SUNContext context) {
   check(ARKStepSetDeduceImplicitRhs(m, 1), "ARKStepSetDeduceImplicitRhs");
 }
 
-void ArkodeDriver::begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) {
+void ArkodeDriver::begin(OdeProblem& problem, double t, N_Vector y) {
   problem_ = &problem;
   t_ = t;
   y_ = y;
-  weights_ = w;
   explicit_start_.known = implicit_start_.known = false;
 }
 
@@ -268,7 +262,7 @@ Attempt ArkodeDriver::judge(int code, N_Vector y_new) {
   Attempt a;
   if (estimate_error_) {
     check(ARKStepGetEstLocalErrors(mem_.get(), scratch_.get()), "ARKStepGetEstLocalErrors");
-    a.error = N_VWrmsNorm(scratch_.get(), weights_);
+    a.error = space_.norm().at(entries(y_), entries(scratch_.get()));
     if (!std::isfinite(a.error)) return {Outcome::not_finite};
   }
   if (code == ARK_ERR_FAILURE)

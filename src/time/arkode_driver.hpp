@@ -19,15 +19,15 @@ namespace meltray::integration {
 /// that nothing of earlier steps enters, and the choice of the next step stays with the caller.
 class ArkodeDriver : public OneStep {
  public:
-  /// Everything passed by reference must outlive the driver. `tableau` lacks its implicit half for explicit
-  /// methods: implicit rates are then added to the explicit ones.
+  /// Everything passed by reference must outlive the driver. `tableau` has an implicit half; explicit methods
+  /// are left to ExplicitDriver.
   ArkodeDriver(SUNContext context, VectorSpace& space, const Tableau& tableau, const Parts& parts,
                bool estimate_error, IntegratorCounters& counters);
   ~ArkodeDriver() override;
   ArkodeDriver(const ArkodeDriver&) = delete;
   ArkodeDriver& operator=(const ArkodeDriver&) = delete;
 
-  void begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) override;
+  void begin(OdeProblem& problem, double t, N_Vector y) override;
   Attempt advance(double h, N_Vector y_new) override;
 
  private:
@@ -69,7 +69,7 @@ class ArkodeDriver : public OneStep {
   // The step under way.
   OdeProblem* problem_ = nullptr;
   double t_ = 0, h_ = 0;
-  N_Vector y_ = nullptr, weights_ = nullptr;
+  N_Vector y_ = nullptr;
   bool rate_not_finite_ = false, solver_failed_ = false;
   std::exception_ptr thrown_;
 };

@@ -50,21 +50,47 @@ void ErrorNorm::weights(const double* y, double* w) const {
   }
 }
 
-double ErrorNorm::operator()(const double* e, const double* w) const {
+/// The largest of the fields' norms, where square_sum(part) sums the squares of a field's weighted entries.
+template <class SquareSum>
+double ErrorNorm::largest(SquareSum&& square_sum) const {
   double largest = 0;
   for (const Part& p : parts_) {
     if (p.count == 0) continue;
-    const double* ep = e + p.begin;
-    const double* wp = w + p.begin;
-    const double sum = parallel_sum(static_cast<std::ptrdiff_t>(p.size), [=](std::ptrdiff_t i) {
-      const double x = ep[i] * wp[i];
-      return x * x;
-    });
-    const double rms = std::sqrt(sum / static_cast<double>(p.count));
+    const double rms = std::sqrt(square_sum(p) / static_cast<double>(p.count));
     if (std::isnan(rms)) return rms;
     largest = std::max(largest, rms);
   }
   return largest;
+}
+
+double ErrorNorm::operator()(const double* e, const double* w) const {
+  return largest([=](const Part& p) {
+    const double *ep = e + p.begin, *wp = w + p.begin;
+    return parallel_sum(static_cast<std::ptrdiff_t>(p.size), [=](std::ptrdiff_t i) {
+      const double x = ep[i] * wp[i];
+      return x * x;
+    });
+  });
+}
+
+double ErrorNorm::at(const double* y, const double* e) const {
+  return largest([=](const Part& p) {
+    const double *ep = e + p.begin, *yp = y + p.begin;
+    const double rtol = p.rtol, atol = p.atol;
+    const std::uint8_t* const active = p.active;
+    const auto weighted = [=](std::ptrdiff_t i) { return ep[i] * (1.0 / (rtol * std::abs(yp[i]) + atol)); };
+    const auto count = static_cast<std::ptrdiff_t>(p.size);
+    // Without marks it is a loop of vector instructions, which sums in the order of the one above.
+    if (active == nullptr)
+      return parallel_sum(count, [=](std::ptrdiff_t i) {
+        const double x = weighted(i);
+        return x * x;
+      });
+    return parallel_sum(count, [=](std::ptrdiff_t i) {
+      const double x = active[i] != 0 ? weighted(i) : 0.0;
+      return x * x;
+    });
+  });
 }
 
 bool all_finite(const double* y, std::size_t n) {

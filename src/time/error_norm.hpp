@@ -22,6 +22,8 @@ class ErrorNorm {
   void weights(const double* y, double* w) const;
   /// NaN when any weighted entry is NaN; 0 without active entries.
   double operator()(const double* e, const double* w) const;
+  /// The same with the weights at y, which are nowhere stored.
+  double at(const double* y, const double* e) const;
 
  private:
   struct Part {
@@ -29,6 +31,8 @@ class ErrorNorm {
     double rtol, atol;
     const std::uint8_t* active;  // null: all
   };
+  template <class SquareSum>
+  double largest(SquareSum&& square_sum) const;
   std::vector<Part> parts_;
   std::size_t length_ = 0;
 };

@@ -21,11 +21,10 @@ ForwardBackwardEuler::ForwardBackwardEuler(VectorSpace& space, const Parts& part
       predicted_(space.take()),
       correction_(space.take()) {}
 
-void ForwardBackwardEuler::begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) {
+void ForwardBackwardEuler::begin(OdeProblem& problem, double t, N_Vector y) {
   problem_ = &problem;
   t_ = t;
   y_ = y;
-  weights_ = w;
   rate_known_ = false;
 }
 
@@ -66,7 +65,7 @@ Outcome ForwardBackwardEuler::solve(double h, N_Vector y_new) {
     if (!problem_->solve_implicit(t_ + h, entries(y_new), h, entries(d))) return Outcome::not_converged;
     N_VLinearSum(1.0, y_new, 1.0, d, y_new);
     if (!all_finite(entries(y_new), space_.length())) return Outcome::not_finite;
-    if (N_VWrmsNorm(d, weights_) <= kNewtonFraction) return Outcome::done;
+    if (space_.norm().at(entries(y_), entries(d)) <= kNewtonFraction) return Outcome::done;
   }
   return Outcome::not_converged;
 }

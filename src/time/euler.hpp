@@ -11,7 +11,7 @@ namespace meltray::integration {
 class ForwardBackwardEuler : public OneStep {
  public:
   ForwardBackwardEuler(VectorSpace& space, const Parts& parts, IntegratorCounters& counters);
-  void begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) override;
+  void begin(OdeProblem& problem, double t, N_Vector y) override;
   Attempt advance(double h, N_Vector y_new) override;
 
  private:
@@ -23,7 +23,7 @@ class ForwardBackwardEuler : public OneStep {
   OwnedVector rate_, predicted_, correction_;
   OdeProblem* problem_ = nullptr;
   double t_ = 0;
-  N_Vector y_ = nullptr, weights_ = nullptr;
+  N_Vector y_ = nullptr;
   bool rate_known_ = false;
 };
 

@@ -11,6 +11,7 @@
 #include "meltray/core/errors.hpp"
 #include "time/arkode_driver.hpp"
 #include "time/euler.hpp"
+#include "time/explicit_driver.hpp"
 #include "time/multirate_driver.hpp"
 #include "time/step_control.hpp"
 
@@ -93,7 +94,7 @@ struct Integrator::Impl {
   IntegratorCounters counters;
   std::optional<Parts> parts;
   std::unique_ptr<integration::OneStep> stepper;
-  integration::OwnedVector weights, y_new;
+  integration::OwnedVector y_new;
 };
 
 /// Builds the stepper at the first step and whenever the problem has other parts than before.
@@ -115,11 +116,12 @@ void Integrator::Impl::prepare(const OdeProblem& problem) {
   else if (options.method == Method::multirate)
     stepper = std::make_unique<integration::MultirateDriver>(context.get(), space, tableau, now,
                                                              options.fast_step, counters);
+  else if (!tableau.implicit_half)
+    stepper = std::make_unique<integration::ExplicitDriver>(space, tableau, now, controls_error(), counters);
   else
     stepper = std::make_unique<integration::ArkodeDriver>(context.get(), space, tableau, now,
                                                           controls_error(), counters);
   parts = now;
-  if (!weights) weights.reset(space.take());
   if (!y_new) y_new.reset(space.take());
 }
 
@@ -142,8 +144,7 @@ Wish Integrator::Impl::first_wish(OdeProblem& problem, double t, double t_stop, 
     ++counters.implicit_evals;
     N_VLinearSum(1.0, rate.get(), 1.0, part.get(), rate.get());
   }
-  const double size = N_VWrmsNorm(start, weights.get());
-  const double speed = N_VWrmsNorm(rate.get(), weights.get());
+  const double size = space.norm().at(y, y), speed = space.norm().at(y, integration::entries(rate.get()));
   const double guess = 0.01 * std::max(size, 1.0) / speed;
   return {std::isfinite(guess) && guess > 0 ? guess : 1e300, "initial"};
 }
@@ -180,8 +181,7 @@ StepReport Integrator::Impl::step(OdeProblem& problem, std::span<const StateFiel
   const N_Vector start = space.view(y.data());
   if (!integration::all_finite(y.data(), y.size()))
     throw NumericalFailure(fmt::format("the state at the start of the step, t = {:.9g} s, is not finite", t));
-  space.norm().weights(y.data(), integration::entries(weights.get()));
-  stepper->begin(problem, t, start, weights.get());
+  stepper->begin(problem, t, start);
 
   const int exponent = controls_error() ? tableau.error_exponent() : 0;
   StepReport report;
@@ -226,6 +226,21 @@ StepReport Integrator::step(OdeProblem& problem, std::span<const StateField> fie
 
 const IntegratorCounters& Integrator::counters() const {
   return impl_->counters;
+}
+
+std::size_t Integrator::bytes(std::size_t entries) const {
+  constexpr int kOfArkode = 12;  // besides the rates of the stages
+  const auto& table = impl_->tableau;
+  const int stages = (table.explicit_half ? table.explicit_half->stages : 0) +
+                     (table.implicit_half ? table.implicit_half->stages : 0);
+  const bool by_arkode = table.implicit_half || impl_->options.method == Method::multirate;
+  // Of the forward-backward Euler method: three of its own. All: the new state.
+  const int vectors = 1 + (stages > 0 ? stages : 3) + (by_arkode ? kOfArkode : 0);
+  return std::max(impl_->space.bytes(), vectors * entries * sizeof(double));
+}
+
+void Integrator::release() {
+  impl_->space.release();
 }
 
 double Integrator::proposed_step() const {

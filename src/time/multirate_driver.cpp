@@ -53,7 +53,8 @@ struct MultirateDriver::Callbacks {
   /// Nothing is remembered between calls of evolve().
   static int reset(MRIStepInnerStepper, double, N_Vector) { return 0; }
   static int weights(N_Vector, N_Vector w, void* user) {
-    N_VScale(1.0, static_cast<MultirateDriver*>(user)->weights_, w);
+    const auto& d = *static_cast<MultirateDriver*>(user);
+    d.space_.norm().weights(entries(d.y_), entries(w));
     return 0;
   }
   static void complaint(int, const char*, const char*, char* text, void* user) {
@@ -144,11 +145,10 @@ bool MultirateDriver::advance_fast(double from, double to, N_Vector y) {
   return true;
 }
 
-void MultirateDriver::begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) {
+void MultirateDriver::begin(OdeProblem& problem, double t, N_Vector y) {
   problem_ = &problem;
   t_ = t;
   y_ = y;
-  weights_ = w;
   fast_step_ = largest_fast_step_ > 0 ? largest_fast_step_ : problem.stable_step(t, entries(y)).seconds;
 }
 

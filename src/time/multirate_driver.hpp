@@ -32,7 +32,7 @@ class MultirateDriver : public OneStep {
   MultirateDriver(const MultirateDriver&) = delete;
   MultirateDriver& operator=(const MultirateDriver&) = delete;
 
-  void begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) override;
+  void begin(OdeProblem& problem, double t, N_Vector y) override;
   Attempt advance(double h, N_Vector y_new) override;
 
  private:
@@ -64,7 +64,7 @@ class MultirateDriver : public OneStep {
   // The step under way.
   OdeProblem* problem_ = nullptr;
   double t_ = 0, fast_step_ = 0;
-  N_Vector y_ = nullptr, weights_ = nullptr;
+  N_Vector y_ = nullptr;
   bool not_finite_ = false;
   std::exception_ptr thrown_;
 };

@@ -30,8 +30,8 @@ struct Parts {
 class OneStep {
  public:
   virtual ~OneStep() = default;
-  /// Start of a step; y and w (error weights at y) stay as they are until the next begin().
-  virtual void begin(OdeProblem& problem, double t, N_Vector y, N_Vector w) = 0;
+  /// Start of a step; y stays as it is until the next begin().
+  virtual void begin(OdeProblem& problem, double t, N_Vector y) = 0;
   /// Tries length h and writes to y_new, which is undefined unless the outcome is `done`. May be called again
   /// with a smaller h: what belongs to (t, y) alone is evaluated once.
   virtual Attempt advance(double h, N_Vector y_new) = 0;

@@ -14,7 +14,11 @@ namespace meltray::integration {
 /// The operations that ARKODE calls; each is one pass over the logical length.
 struct VectorOps {
   static VectorSpace& space(N_Vector v) { return *VectorSpace::content(v).space; }
-  static double* data(N_Vector v) { return VectorSpace::content(v).data; }
+  static double* data(N_Vector v) {
+    VectorSpace::Content& c = VectorSpace::content(v);
+    if (c.data == nullptr) c.allocate();
+    return c.data;
+  }
   static std::size_t size(N_Vector v) { return space(v).length(); }
 
   static N_Vector_ID id(N_Vector) { return SUNDIALS_NVEC_CUSTOM; }
@@ -94,6 +98,8 @@ struct VectorOps {
   static int combine(int count, double* c, N_Vector* vx, N_Vector vz) {
     constexpr std::ptrdiff_t kChunk = 512;
     double* z = data(vz);
+    for (int k = 0; k < count; ++k)
+      if (c[k] != 0.0) data(vx[k]);  // threads must not be the first to touch it
     sweep_blocks(size(vz), [=](std::ptrdiff_t begin, std::ptrdiff_t end) {
       double sum[kChunk];
       for (std::ptrdiff_t at = begin; at < end; at += kChunk) {
@@ -135,6 +141,11 @@ struct VectorOps {
   }
 };
 
+void VectorSpace::Content::allocate() {
+  memory.assign(space->capacity_, 0.0);
+  data = memory.data();
+}
+
 VectorSpace::VectorSpace(SUNContext context) : context_(context), view_(add()) {}
 
 VectorSpace::~VectorSpace() = default;
@@ -157,10 +168,14 @@ void VectorSpace::shape(std::span<const StateField> fields, std::size_t length) 
   if (length <= capacity_) return;
   // A quarter more than needed: particles are split one refinement at a time.
   capacity_ = capacity_ == 0 ? length : length + length / 4;
+  release();
+}
+
+void VectorSpace::release() {
   for (const auto& c : all_) {
     if (c.get() == view_) continue;
-    c->memory.assign(capacity_, 0.0);
-    c->data = c->memory.data();
+    c->memory = {};
+    c->data = nullptr;
   }
 }
 
@@ -170,10 +185,7 @@ N_Vector VectorSpace::take() {
     spare_.pop_back();
     return v;
   }
-  Content* c = add();
-  c->memory.assign(capacity_, 0.0);
-  c->data = c->memory.data();
-  return c->shell.get();
+  return add()->shell.get();
 }
 
 void VectorSpace::give_back(N_Vector v) {
@@ -183,6 +195,12 @@ void VectorSpace::give_back(N_Vector v) {
 N_Vector VectorSpace::view(double* data) {
   view_->data = data;
   return view_->shell.get();
+}
+
+std::size_t VectorSpace::bytes() const {
+  std::size_t doubles = 0;
+  for (const auto& c : all_) doubles += c->memory.capacity();
+  return doubles * sizeof(double);
 }
 
 double* entries(N_Vector v) {

@@ -15,7 +15,8 @@ namespace meltray::integration {
 /// All vectors that ARKODE works with. They share one logical length and one norm, which live here: a change
 /// of the state's size reaches every vector at once (no ARKStepResize, nothing to re-attach), and memory
 /// grows only when the capacity is exceeded. Destroyed vectors are kept for the next clone, so that steps do
-/// not allocate. (Debian's own vectors are compiled without optimisation and about ten times slower.)
+/// not allocate. ARKODE asks for more vectors than a method uses: memory comes with the first access.
+/// (Debian's own vectors are compiled without optimisation and about ten times slower.)
 class VectorSpace {
  public:
   explicit VectorSpace(SUNContext context);
@@ -33,6 +34,9 @@ class VectorSpace {
 
   const ErrorNorm& norm() const { return norm_; }
   std::size_t length() const { return norm_.length(); }
+  std::size_t bytes() const;
+  /// Gives back the memory of all vectors; their entries are zero at the next access.
+  void release();
 
  private:
   struct FreeEmpty {
@@ -44,6 +48,7 @@ class VectorSpace {
     double* data;
     std::vector<double> memory;
     Shell shell;
+    void allocate();
   };
   Content* add();
   static Content& content(N_Vector v) { return *static_cast<Content*>(v->content); }

@@ -24,6 +24,7 @@ struct CheckpointHeader {
   /// Written at a time the case file fixes. The uninterrupted run drops its history at the same time, so only
   /// from such a checkpoint does a resumed run repeat it bit for bit.
   bool scheduled = true;
+  std::size_t expected_bytes = 0;  ///< of the state, where known; not written
 };
 
 /// An opened checkpoint: verified against its checksum as a whole before any of it is read.

@@ -15,6 +15,9 @@ namespace meltray::observe {
 /// full disk at any moment leaves either the old or the new content. Throws IoError with file and reason.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
+/// The same with a content that stands in several places, one after the other.
+void replace_file(const std::filesystem::path& path,
+                  std::initializer_list<std::span<const std::byte>> pieces);
 
 /// Whole file. Throws IoError when it cannot be read.
 std::vector<std::byte> read_bytes(const std::filesystem::path& path);

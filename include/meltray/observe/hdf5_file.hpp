@@ -18,7 +18,9 @@ class Hdf5Writer {
   /// compressed: chunks with the shuffle filter and gzip level 1.
   enum class Packing { plain, compressed };
 
-  Hdf5Writer();
+  /// `expected`: bytes for which memory is taken at once, where they are known; without, it grows piece by
+  /// piece.
+  explicit Hdf5Writer(std::size_t expected = 0);
   ~Hdf5Writer();
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -42,8 +44,8 @@ class Hdf5Writer {
   void attribute(std::string_view object, std::string_view name, std::string_view v);
   void attribute(std::string_view object, std::string_view name, std::span<const double> v);
 
-  /// The bytes of the file.
-  std::vector<std::byte> image();
+  /// The bytes of the file, in place: until the next call of another member.
+  std::span<const std::byte> image();
 
  private:
   std::int64_t file_;

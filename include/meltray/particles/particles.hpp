@@ -43,8 +43,11 @@ struct Particles {
   /// Appends one solid particle at rest; `wall_face` is 1 + face for a dummy, 0 otherwise.
   void add(const Vec3& position, double enthalpy, double m, double smoothing_length,
            std::uint8_t wall_face = 0);
+  /// Takes memory for so many particles, in the arrays that add() fills.
+  void reserve(std::size_t n);
   /// Dummy particle outside a box face: fills kernels, never moves or melts.
   bool is_wall(std::size_t i) const { return wall[i] != 0; }
+  std::size_t bytes() const;
   /// Saves or loads every array.
   void archive(Archive& a);
 };

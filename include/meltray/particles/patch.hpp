@@ -28,6 +28,7 @@ struct Patch {
   std::vector<std::uint8_t> elastic;
 
   Index size() const { return static_cast<Index>(global.size()); }
+  std::size_t bytes() const;
 };
 
 /// What a particle is to the elastic solid: melt, wall or solid that rests; solid that moves; solid that is
@@ -67,6 +68,7 @@ class PatchSelector {
   void gather(const Particles& particles, const Vec3& min, const Vec3& max, std::vector<Index>& out) const;
 
   const std::vector<Index>& moving() const { return moving_; }
+  std::size_t bytes() const;
   /// Calls f(i) for resting particles (no dummies) within `radius` of a point; at most one cell wide.
   template <class F>
   void for_resting_near(const Particles& p, const Vec3& point, double radius, F&& f) const {

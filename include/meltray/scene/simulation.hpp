@@ -121,7 +121,8 @@ class Simulation {
   std::vector<TermInfo> terms() const;
   /// Every step limit of the current state: name -> seconds (before error control).
   std::vector<StepLimit> step_limits();
-  /// Bytes held, by part.
+  /// Bytes held, by part; those of terms and of the integrator before the first step are what it is going to
+  /// take.
   std::vector<std::pair<std::string, std::size_t>> memory() const;
 
   /// Saves or loads the whole state. Saving drops everything that carries history (lists, warm starts,

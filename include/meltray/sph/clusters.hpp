@@ -35,6 +35,8 @@ class ClusterSet {
   const std::vector<Index>& particle() const { return particle_; }
   /// Copies a field of the patch into slots, `empty` where no particle is.
   void pack(const std::vector<double>& field, double empty, AlignedDoubles& out) const;
+  /// Gives back what only the building of lists needs: positions and boxes.
+  void close();
   std::size_t bytes() const;
 
  private:
@@ -49,11 +51,10 @@ class ClusterSet {
   std::array<double, 2> origin_{}, inverse_width_{};  ///< of the columns, horizontally
   std::array<Index, 2> columns_{1, 1};
   std::vector<Index> particle_;
-  std::vector<Index> column_start_;                 ///< first octet of each column
-  std::vector<Box> box_;                            ///< of each octet
-  std::array<AlignedDoubles, 3> position_;          ///< of each slot, wrapped into the period
-  Box all_{};                                       ///< of the whole set
-  std::vector<std::pair<Index, Index>> of_column_;  ///< scratch of sort()
+  std::vector<Index> column_start_;         ///< first octet of each column
+  std::vector<Box> box_;                    ///< of each octet
+  std::array<AlignedDoubles, 3> position_;  ///< of each slot, wrapped into the period
+  Box all_{};                               ///< of the whole set
 };
 
 /// For each group of rows the octets of which some particle is within reach of some row.
@@ -78,7 +79,6 @@ class ClusterList {
   void search(const ClusterSet& rows, const ClusterSet& sources, Index octet, double reach, Block& block);
 
   std::vector<Index> start_{0}, octet_, neighbours_;
-  std::vector<Block> blocks_;
 };
 
 }  // namespace meltray::sph

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -42,6 +43,9 @@ class PairList {
   /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
   /// while particles move by less than half of it.
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
+  /// Only the rows of the particles in cells [first, last), without dummies of faces: a list in pieces, for
+  /// what is needed once. The other rows are undefined.
+  void build_piece(const Patch& patch, const CellGrid& grid, double skin, Index first, Index last);
   /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours
   /// only.
   void refresh(const Patch& patch, KernelType kernel);
@@ -145,7 +149,11 @@ class PairList {
   void refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some);
   template <int D, class Kernel, bool Periodic>
   void refresh_rows(const Patch& patch, const std::vector<Index>* some);
-  void search(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& wanted);
+  void clear_blocks();
+  /// Searches in cells [first, last), `block_cells` of them a task.
+  void search(const Patch& patch, const CellGrid& grid, double skin, std::span<const Index> cells,
+              Index block_cells);
+  void copy_blocks(const Patch& patch);
 
   int dim_ = 3;
   std::array<double, 3> period_{};

@@ -24,15 +24,14 @@ class BulkConduction {
 
  private:
   template <class Rests>
-  void assemble(const SceneConstants& constants, Rests&& rests);
+  void assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests);
 
   Patch patch_;
-  sph::PairList pairs_;
-  /// Row i holds the entries from pairs_.begin(i) to row_end_[i].
-  std::vector<Index> awake_, neighbour_, row_end_;
+  /// Row i holds the entries from row_begin_[i] to row_end_[i].
+  std::vector<Index> neighbour_, row_begin_, row_end_;
   std::vector<float> k_;
   std::vector<double> lambda_, missing_, temperature_, gain_;
-  std::vector<std::uint8_t> row_wanted_, at_rest_, skip_;
+  std::vector<std::uint8_t> at_rest_, skip_;
   double rate_ = 0;
 };
 

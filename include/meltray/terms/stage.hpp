@@ -54,7 +54,8 @@ struct Stage {
 
   std::vector<double> excess;  ///< rho - rho_0(T) of a weakly compressible scene [kg/m^3]; else empty
 
-  // Free surface (filled by compute_surface when a term needs it; zero elsewhere).
+  // Free surface (filled by compute_surface when a term needs it; zero elsewhere, empty in scenes whose steps
+  // have no surface).
   std::vector<double> fill;              ///< Shepard sum over that of a full lattice
   std::vector<double> diagonal;          ///< Laplacian sum over that of a full lattice
   std::vector<double> exposure;          ///< |grad c| over that of a flat face, at most 1
@@ -67,6 +68,7 @@ struct Stage {
 
   Index size() const { return patch->size(); }
   double area_of_spacing() const;
+  std::size_t bytes() const;
 };
 
 /// Fewest neighbours of a particle that takes part in the pressure field.
@@ -75,8 +77,12 @@ constexpr Index fewest_neighbours(int dim) {
 }
 
 /// Sizes the arrays for a newly selected patch and fills volume, moving and the index lists.
-/// `heat` must be set before by the caller for all particles of the patch.
-void prepare_stage(Stage& stage);
+/// `heat` must be set before by the caller for all particles of the patch. Without `with_surface` the arrays
+/// of the surface stay empty.
+void prepare_stage(Stage& stage, bool with_surface = true);
+
+/// Gives back the memory of the fields; which particles move and exchange heat stays.
+void release_fields(Stage& stage);
 
 /// Finds the free surface: Shepard sum, colour gradient, continuous surface weight, normals and areas, for
 /// every row of the list. A particle of a flat face has a Shepard sum near 0.79 (h = 1.3 dx), one layer below
@@ -85,5 +91,10 @@ void prepare_stage(Stage& stage);
 /// 1 on a flat face, 0.06 below it, under 0.2 in disordered bulk) still shows it, so either of the two makes
 /// a surface.
 void compute_surface(Stage& stage);
+
+/// The surface weights alone, of the particles that compute_surface() has rows for, from a list that is made
+/// piece by piece and held by nobody: weight[i] for every particle of the patch. For output of scenes whose
+/// steps need no surface.
+void find_surface_weights(const Stage& stage, const CellGrid& grid, std::vector<double>& weight);
 
 }  // namespace meltray::terms

@@ -83,7 +83,8 @@ struct IntegratorCounters {
   std::int64_t steps = 0, rejected = 0, explicit_evals = 0, implicit_evals = 0, linear_solves = 0;
 };
 
-/// One-step driver around SUNDIALS ARKODE (and forward-backward Euler of our own as the yardstick).
+/// One-step driver around SUNDIALS ARKODE (explicit methods with its tables in a loop of our own, and
+/// forward-backward Euler of our own as the yardstick).
 /// It keeps no history besides the proposed next step: each call starts from the y it is given, so the caller
 /// may change y, its size and its fields between calls, and a resumed run repeats the steps bit for bit.
 class Integrator {
@@ -99,8 +100,13 @@ class Integrator {
                   std::vector<double>& y);
 
   const IntegratorCounters& counters() const;
+  /// Bytes of the vectors of a method, y itself left out: before the first step what a y of so many entries
+  /// is going to take.
+  std::size_t bytes(std::size_t entries) const;
   /// Step that the controller would take next, before stability limits [s].
   double proposed_step() const;
+  /// Gives back the memory of the vectors: between steps they hold nothing that is needed.
+  void release();
   /// Saves or loads everything that decides the next step (proposed step, controller memory, counters).
   void archive(Archive& a);
 

@@ -73,7 +73,7 @@ AcousticFields AcousticPass::Fields::view() {
   for (int c = 0; c < 3; ++c) {
     f.x[c] = x[c].data();
     f.v[c] = v[c].data();
-    f.gradient[c] = gradient[c].data();
+    f.gradient[c] = (gradient[c].empty() ? gradient[0] : gradient[c]).data();  // of zeros: one for all
   }
   f.density = density.data();
   f.volume = volume.data();
@@ -147,20 +147,25 @@ void AcousticPass::find_pairs(Stage& s, double skin, const std::array<double, 3>
       s.loose[i] = k.free_surface && count < fewest_neighbours(k.dim);
     });
   density_rate_.resize(melt_.set.slots());
-  for (int c = 0; c < k.dim; ++c)
-    for (auto* field : {&pressure_force_[c], &viscous_force_[c], &melt_.gradient[c]})
-      field->assign(melt_.set.slots(), 0.0);
+  melt_.set.close();
+  wall_.set.close();
+  const bool viscous = artificial.alpha > 0, sloped = diffusion.needs_gradients();
+  for (int c = 0; c < k.dim; ++c) {
+    pressure_force_[c].assign(melt_.set.slots(), 0.0);
+    viscous_force_[c].assign(viscous ? melt_.set.slots() : 0, 0.0);
+    melt_.gradient[c].assign(c == 0 || sloped ? melt_.set.slots() : 0, 0.0);
+  }
   if (diffusion.needs_gradients())
     for (int m = 0; m < symmetric_count(k.dim); ++m) moment_[m].resize(melt_.set.slots());
-  if (artificial.alpha == 0) return;
+  if (!viscous) return;
   // Slip walls take no part in artificial viscosity.
-  drag_.resize(s.size());
+  std::vector<double> drag(s.size());
   parallel_for(s.size(), [&](Index i) {
     const int wall = s.patch->wall[i];
-    drag_[i] = wall && !k.faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
+    drag[i] = wall && !k.faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
   });
-  melt_.set.pack(drag_, 0, melt_.drag);
-  wall_.set.pack(drag_, 0, wall_.drag);
+  melt_.set.pack(drag, 0, melt_.drag);
+  wall_.set.pack(drag, 0, wall_.drag);
 }
 
 void AcousticPass::gather(Stage& s) {
@@ -213,12 +218,22 @@ void AcousticPass::add_artificial_viscosity(const Stage& s, const MutField& acce
   });
 }
 
+void AcousticPass::release() {
+  kind_ = {};
+  melt_ = {};
+  wall_ = {};
+  melt_melt_ = melt_wall_ = wall_melt_ = {};
+  density_rate_ = {};
+  for (int c = 0; c < 3; ++c) pressure_force_[c] = viscous_force_[c] = {};
+  for (auto& m : moment_) m = {};
+}
+
 const char* AcousticPass::instructions() {
   return acoustic_kernel(3, false).instructions;
 }
 
 std::size_t AcousticPass::bytes() const {
-  std::size_t doubles = drag_.capacity() + density_rate_.capacity();
+  std::size_t doubles = density_rate_.capacity();
   for (const Fields* f : {&melt_, &wall_}) {
     doubles += f->density.capacity() + f->volume.capacity() + f->pressure.capacity() + f->drag.capacity() +
                f->excess.capacity();

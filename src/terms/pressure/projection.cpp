@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "meltray/core/memory.hpp"
 #include "meltray/sph/renormalise.hpp"
 
 namespace meltray::terms {
@@ -39,8 +40,8 @@ void Projection::assemble(const Stage& s) {
     matrix_.start[r + 1] = count;
   });
   for (Index r = 0; r < rows; ++r) matrix_.start[r + 1] += matrix_.start[r];
-  matrix_.column.resize(matrix_.start[rows]);
-  matrix_.off.resize(matrix_.start[rows]);
+  resize_anew(matrix_.column, matrix_.start[rows]);
+  resize_anew(matrix_.off, matrix_.start[rows]);
   const auto& lattice = s.constants->lattice;
   const double scale = 2 / (s.constants->density * lattice.second_moment);
   const double full = scale * lattice.laplacian;

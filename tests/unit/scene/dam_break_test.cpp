@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "meltray/scene/case_file.hpp"
@@ -12,10 +13,10 @@ using namespace meltray;
 
 namespace {
 
-std::size_t list_bytes(const scene::Simulation& s) {
+double bytes_of(const scene::Simulation& s, const std::string& part) {
   for (const auto& [name, bytes] : s.memory())
-    if (name == "pair lists") return bytes;
-  return 0;
+    if (name == part) return static_cast<double>(bytes);
+  return -1;
 }
 
 }  // namespace
@@ -32,8 +33,13 @@ TEST_CASE("without a list of pairs a dam breaks as with one") {
     without.step(0.3);
     with.step(0.3);
   }
-  CHECK(list_bytes(without) < 100);
-  CHECK(list_bytes(with) > 1000);
+  CHECK(bytes_of(without, "pair lists") < 100);
+  CHECK(bytes_of(with, "pair lists") > 1000);
+  // Two stages of x, v, rho, the state and the new one: no vector more.
+  const double state = 5.0 * sizeof(double) * static_cast<double>(without.liquid_count());
+  CHECK(bytes_of(without, "state vectors") == Approx(4 * state).epsilon(0.02));
+  // Walls far from the water do not take part.
+  CHECK(bytes_of(without, "patch and stage") < 0.7 * bytes_of(with, "patch and stage"));
   const Particles &a = without.particles(), &b = with.particles();
   for (std::size_t i = 0; i < a.size(); ++i)
     for (int c = 0; c < 2; ++c) REQUIRE(a.x[c][i] == Approx(b.x[c][i]).margin(1e-9));

@@ -175,3 +175,34 @@ TEST_CASE("free surface: loose particles and dummies") {
   CHECK(loose == 2);
   CHECK(wrong == 0);
 }
+
+TEST_CASE("free surface: weights found piece by piece are those of a list") {
+  const int dim = GENERATE(2, 3);
+  CAPTURE(dim);
+  StageSetup s(dim, kDx, test::plain_metal(), sph::KernelType::wendland_c2);
+  const Vec3 min = Vec3::Zero(), max = Vec3::Constant((dim == 3 ? 20 : 80) * kDx);
+  const int up = dim - 1;
+  s.for_lattice(min, max, [&](const Vec3& x) {
+    // A pool on solid with a deep solid below, of which the weights are not asked for.
+    s.add(x, x[up] > 0.5 * max[up] ? 2000 : 300, x[up] > 0.5 * max[up]);
+  });
+  s.dummies(0, min, max, 300);
+  s.jitter(0.2);
+  Vec3 low = min, roof = max;
+  low[0] -= 3 * kDx;
+  roof[up] += 4 * kDx;
+  s.prepare(low, roof);
+  REQUIRE(s.patch.size() > 4000);  // several pieces
+  std::vector<double> weight;
+  terms::find_surface_weights(s.stage, s.selector.grid(), weight);
+  Index differ = 0, asleep = 0, shown = 0;
+  for (Index i = 0; i < s.patch.size(); ++i) {
+    const bool row = s.patch.liquid[i] || s.pairs.next_to_melt()[i];
+    differ += row && !s.patch.wall[i] && weight[i] != Approx(s.stage.surface[i]).margin(1e-9);
+    asleep += !row && weight[i] != 0;
+    shown += weight[i] > 0.5;
+  }
+  CHECK(differ == 0);
+  CHECK(asleep == 0);
+  CHECK(shown > 50);
+}

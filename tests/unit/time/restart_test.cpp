@@ -127,6 +127,7 @@ TEST_CASE("restart: a restored run repeats the uninterrupted one bit for bit") {
 
   MemoryArchive archive;
   first.archive(archive);
+  first.release();
   Run rest;
   rest.t = whole.t;
   rest.y = whole.y;

@@ -33,6 +33,8 @@ class AcousticPass {
   void add_pressure_force(const Stage& stage, const MutField& acceleration) const;
   void add_artificial_viscosity(const Stage& stage, const MutField& acceleration) const;
 
+  /// Gives back the lists and fields of find_pairs().
+  void release();
   /// Name of the instructions that the loops were compiled for.
   static const char* instructions();
   std::size_t bytes() const;
@@ -49,7 +51,6 @@ class AcousticPass {
 
   std::array<double, 3> period_{};
   std::vector<std::uint8_t> kind_;
-  std::vector<double> drag_;  ///< per particle of the patch [kg]
   Fields melt_, wall_;
   sph::ClusterList melt_melt_, melt_wall_, wall_melt_;
   AlignedDoubles density_rate_, pressure_force_[3], viscous_force_[3], moment_[6];

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "meltray/core/memory.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace meltray;
+
+TEST_CASE("memory: an array that grows a little holds little more than it needs") {
+  std::vector<double> v;
+  resize_anew(v, 1000);
+  CHECK(v.size() == 1000);
+  resize_anew(v, 1100);  // beyond what is held: resize() would go to 2000
+  CHECK(v.size() == 1100);
+  CHECK(v.capacity() <= 1100 + 1100 / 16);
+  const double* const place = v.data();
+  resize_anew(v, 1101);
+  CHECK(v.data() == place);
+}
+
+TEST_CASE("memory: what arrays hold counts, not what they use") {
+  std::vector<double> v;
+  v.reserve(100);
+  std::vector<char> c;
+  c.reserve(10);
+  CHECK(held_bytes(v, c) == v.capacity() * sizeof(double) + c.capacity());
+  CHECK(held_bytes(std::array<std::vector<double>, 2>{}) == 0);
+}
