@@ -212,6 +212,7 @@ void AcousticPass::add_pressure_force(const Stage& s, const MutField& accelerati
 }
 
 void AcousticPass::add_artificial_viscosity(const Stage& s, const MutField& acceleration) const {
+  if (artificial.alpha == 0) return;
   const double strength = artificial.alpha * state.sound_speed * s.constants->smoothing;
   for_particles(melt_.set, [&](Index slot, Index i) {
     for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] += strength * viscous_force_[c][slot];

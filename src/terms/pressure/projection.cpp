@@ -86,6 +86,35 @@ double Projection::mobility(const Stage& s, Index i, Index j) const {
   return row_of_[j] < 0 ? 0.0 : 0.5 * (s.patch->liquid[i] + s.patch->liquid[j]);
 }
 
+/// What the tangential velocity of the melt around a fixed particle adds to its divergence, for a field u.
+/// Where the melt ends, as at the front of a film that runs over a dry floor, melt on one side only would
+/// look as if it were compressed, and the pressure of that would hold the front back.
+template <int D>
+double Projection::sliding(const Stage& s, Index i, const ConstField& u) const {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  Vector velocity = Vector::Zero(), open = Vector::Zero(), normal = Vector::Zero();
+  double weight = 0;
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    const double volume = s.volume[p.j];
+    for (int c = 0; c < D; ++c) {
+      const double slope = volume * p.f * p.x[c];
+      if (!s.patch->liquid[p.j]) {
+        normal[c] += slope;
+        continue;
+      }
+      velocity[c] += volume * p.w * (u[c][p.j] - u[c][i]);
+      open[c] += slope;
+    }
+    if (s.patch->liquid[p.j]) weight += volume * p.w;
+  });
+  if (weight == 0) return 0;
+  // Dummies end where the box ends: their normal is that of their face.
+  if (s.patch->wall[i]) normal = Vector::Unit(s.constants->faces[s.patch->wall[i] - 1].axis);
+  velocity /= weight;
+  if (normal.squaredNorm() > 0) velocity -= velocity.dot(normal) / normal.squaredNorm() * normal;
+  return velocity.dot(open);
+}
+
 void Projection::divergence(const Stage& s, const ConstField& u, std::vector<double>& out) const {
   out.resize(particle_of_.size());
   const double scale = 1 / s.constants->lattice.second_moment;
@@ -101,7 +130,8 @@ void Projection::divergence(const Stage& s, const ConstField& u, std::vector<dou
         for (int c = 0; c < D; ++c) dot += (u[c][p.j] - ui[c]) * p.x[c];
         return std::array<double, 1>{volume[p.j] * p.f * dot};
       });
-      out[r] = scale * sum[0];
+      // Fixed particles stop what comes along their normal; what slides past them they let pass.
+      out[r] = scale * (s.patch->liquid[i] ? sum[0] : sum[0] - sliding<D>(s, i, u));
     });
   });
 }

@@ -49,6 +49,8 @@ class Projection {
   Index floating() const { return floating_; }
 
  private:
+  template <int D>
+  double sliding(const Stage& stage, Index i, const ConstField& u) const;
   double mobility(const Stage& stage, Index i, Index j) const;
 
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
