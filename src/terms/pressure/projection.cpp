@@ -88,12 +88,13 @@ double Projection::mobility(const Stage& s, Index i, Index j) const {
 
 /// What the tangential velocity of the melt around a fixed particle adds to its divergence, for a field u.
 /// Where the melt ends, as at the front of a film that runs over a dry floor, melt on one side only would
-/// look as if it were compressed, and the pressure of that would hold the front back.
+/// look as if it were compressed, and the pressure of that would hold the front back. Away from the free
+/// surface nothing is taken off: there a linear pressure is exact, corners included.
 template <int D>
 double Projection::sliding(const Stage& s, Index i, const ConstField& u) const {
   using Vector = Eigen::Matrix<double, D, 1>;
   Vector velocity = Vector::Zero(), open = Vector::Zero(), normal = Vector::Zero();
-  double weight = 0;
+  double weight = 0, at_surface = 0;
   s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
     const double volume = s.volume[p.j];
     for (int c = 0; c < D; ++c) {
@@ -105,14 +106,16 @@ double Projection::sliding(const Stage& s, Index i, const ConstField& u) const {
       velocity[c] += volume * p.w * (u[c][p.j] - u[c][i]);
       open[c] += slope;
     }
-    if (s.patch->liquid[p.j]) weight += volume * p.w;
+    if (!s.patch->liquid[p.j]) return;
+    weight += volume * p.w;
+    at_surface += volume * p.w * s.surface[p.j];
   });
-  if (weight == 0) return 0;
+  if (at_surface == 0) return 0;
   // Dummies end where the box ends: their normal is that of their face.
   if (s.patch->wall[i]) normal = Vector::Unit(s.constants->faces[s.patch->wall[i] - 1].axis);
   velocity /= weight;
   if (normal.squaredNorm() > 0) velocity -= velocity.dot(normal) / normal.squaredNorm() * normal;
-  return velocity.dot(open);
+  return at_surface / weight * velocity.dot(open);
 }
 
 void Projection::divergence(const Stage& s, const ConstField& u, std::vector<double>& out) const {
