@@ -171,7 +171,10 @@ def instructions_per_step(binary, source, until):
                           env={**os.environ, "GOMP_SPINCOUNT": "0"})
     collected = re.search(r"Collected : (\d+)", done.stderr)
     if done.returncode != 0 or not collected:
-        sys.exit(f"scenes.py: {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
+        # Valgrind 3.19 does not know every instruction that compilers write.
+        last = done.stderr.strip().splitlines()[-1:]
+        print(f"scenes.py: no instructions counted: valgrind ended with {done.returncode}: {' '.join(last)}", file=sys.stderr)
+        return None
     after = json.loads((out / "summary.json").read_text())
     return int(collected[1]) / (after["steps"] - before["steps"])
 
@@ -181,15 +184,16 @@ def cold(binary, folder, quick, threads):
     for k, (name, bottom) in enumerate(WORKPIECES.items()):
         settings = [f"{key}=[0.0, -1.2e-3, {bottom}]" for key in ("domain.min_m", "bodies.0.min_m")]
         base = folder / f"cold{k}"
-        run(binary, WELD, base, COLD_START, ["output.snapshot_interval_s=0", *settings], threads)
+        start = run(binary, WELD, base, COLD_START, ["output.snapshot_interval_s=0", *settings], threads)
         until = COLD_START + 5e-5 if quick else COLD_END
         rows.append(row(name, fork(binary, base, folder / f"cold{k}_on", until, [], threads), threads))
+        rows[-1]["peak_memory_mb"] = start["peak_memory_bytes"] / 1e6  # without the checkpoint that is read
         rows[-1]["instructions_per_step"] = instructions_per_step(binary, base, until)
     show("a weld and its cold solid", rows)
     cut, whole = rows
     print(f"a step of the whole workpiece: {whole['milliseconds_per_step'] / cut['milliseconds_per_step']:.3f} times "
           "the time", end="")
-    if whole["instructions_per_step"]:
+    if whole["instructions_per_step"] and cut["instructions_per_step"]:
         print(f", {whole['instructions_per_step'] / cut['instructions_per_step']:.4f} times the instructions", end="")
     print(f"; {1e6 * (whole['peak_memory_mb'] - cut['peak_memory_mb']) / COLD_PARTICLES:.0f} bytes a particle of "
           "cold solid")
@@ -203,7 +207,9 @@ def pools(binary, folder, quick, threads, pool):
         for projection in ("step", "stage"):
             summary = fork(binary, base, folder / f"pool{k}{projection}", until,
                            [f"splitting.projection={projection}", "output.snapshot_interval_s=0"], threads)
-            liquid, wall = summary["particles"]["liquid"], row("", summary, threads)["seconds"]
+            liquid = summary["particles"]["liquid"]
+            # Steps alone: reading the checkpoint is as long as some of them.
+            wall = sum(part["seconds"] for name, part in summary["time_by_part"].items() if name != "observe")
             rows.append({
                 **row(f"{liquid} liquid, {projection}", summary, threads),
                 "seconds_per_millisecond": 1e-3 * wall / summary["time_s"],
