@@ -150,7 +150,7 @@ class PairList {
   template <int D, class Kernel, bool Periodic>
   void refresh_rows(const Patch& patch, const std::vector<Index>* some);
   void clear_blocks();
-  /// Searches in cells [first, last), `block_cells` of them a task.
+  /// Finds the wanted rows of these cells, `block_cells` of them a task.
   void search(const Patch& patch, const CellGrid& grid, double skin, std::span<const Index> cells,
               Index block_cells);
   void copy_blocks(const Patch& patch);

@@ -96,19 +96,14 @@ double Projection::sliding(const Stage& s, Index i, const ConstField& u) const {
   Vector velocity = Vector::Zero(), open = Vector::Zero(), normal = Vector::Zero();
   double weight = 0, at_surface = 0;
   s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-    const double volume = s.volume[p.j];
-    for (int c = 0; c < D; ++c) {
-      const double slope = volume * p.f * p.x[c];
-      if (!s.patch->liquid[p.j]) {
-        normal[c] += slope;
-        continue;
-      }
-      velocity[c] += volume * p.w * (u[c][p.j] - u[c][i]);
-      open[c] += slope;
-    }
-    if (!s.patch->liquid[p.j]) return;
-    weight += volume * p.w;
-    at_surface += volume * p.w * s.surface[p.j];
+    const double volume = s.volume[p.j], share = volume * p.w;
+    const bool melt = s.patch->liquid[p.j];
+    Vector& side = melt ? open : normal;
+    for (int c = 0; c < D; ++c) side[c] += volume * p.f * p.x[c];
+    if (!melt) return;
+    for (int c = 0; c < D; ++c) velocity[c] += share * (u[c][p.j] - u[c][i]);
+    weight += share;
+    at_surface += share * s.surface[p.j];
   });
   if (at_surface == 0) return 0;
   // Dummies end where the box ends: their normal is that of their face.
