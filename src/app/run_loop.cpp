@@ -232,6 +232,7 @@ void RunLoop::write_row() {
                     simulation_.scene().flow.sound_speed));
   }
   row_time_ = row.time;
+  memory_ = simulation_.memory();
   state_.since_row = {};
   progress_.row(row);
 }
@@ -284,6 +285,7 @@ void RunLoop::write_summary(const std::string& outcome, int exit_code, const std
   r.session_start = start_time_;
   r.resumed = static_cast<int>(state_.resumed);
   r.active = state_.active;
+  r.memory = memory_;
   r.forked_from = state_.forked_from;
   r.checkpoint_time = checkpoint_time_;
   r.threads = threads();

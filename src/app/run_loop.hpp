@@ -4,6 +4,8 @@
 #include <chrono>
 #include <exception>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/log.hpp"
 #include "meltray/observe/checkpoint.hpp"
@@ -89,6 +91,8 @@ class RunLoop {
   double row_time_ = -1;         ///< of the last row
   double checkpoint_time_ = -1;  ///< of the newest checkpoint
   bool warned_of_density_ = false;
+  /// Bytes by part when the last row was written.
+  std::vector<std::pair<std::string, std::size_t>> memory_;
 };
 
 }  // namespace meltray::app

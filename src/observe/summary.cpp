@@ -168,6 +168,8 @@ std::string summary_text(const RunRecord& r, scene::Simulation* simulation) {
   j["ejected"] = c.ejected;
   j["limiter"] = Json::object();
   for (const auto& [name, n] : c.limiter) j["limiter"][name] = n;
+  j["memory_by_part_bytes"] = Json::object();
+  for (const auto& [name, bytes] : r.memory) j["memory_by_part_bytes"][name] = bytes;
   j["time_by_part"] = shares_by_part(simulation->timers());
   j["budgets"] = {{"energy", energy_json(simulation->energy())},
                   {"momentum", momentum_json(simulation->momentum())},

@@ -167,17 +167,18 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   copy_blocks(patch);
 }
 
-void PairList::build_piece(const Patch& patch, const CellGrid& grid, double skin, Index first, Index last) {
+void PairList::build_piece(const Patch& patch, const CellGrid& grid, double skin,
+                           std::span<const Index> cells) {
   dim_ = patch.dim;
   period_ = grid.period();
-  const Index n = patch.size(), begin = patch.cell_start[first], end = patch.cell_start[last];
+  const Index n = patch.size(), begin = patch.cell_start[cells.front()],
+              end = patch.cell_start[cells.back() + 1];
   clear_blocks();
   wanted_.resize(n);
   next_to_wall_.resize(n);
   start_.resize(n + 1);
   for (Index i = begin; i < end; ++i) wanted_[i] = !patch.wall[i];
-  const auto from = std::lower_bound(patch.cells.begin(), patch.cells.end(), first);
-  search(patch, grid, skin, {from, std::lower_bound(from, patch.cells.end(), last)}, kCellsPerBlockOfPiece);
+  search(patch, grid, skin, cells, kCellsPerBlockOfPiece);
 
   std::fill(start_.begin() + begin, start_.begin() + end + 1, 0);
   for (const Block& b : blocks_)

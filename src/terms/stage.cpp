@@ -143,15 +143,16 @@ void find_surface_weights(const Stage& s, const CellGrid& grid, std::vector<doub
   weight.assign(s.size(), 0.0);
   sph::PairList piece;
   std::vector<Index> rows;
-  for (Index first = 0, last = 0; first < grid.cells(); first = last) {
-    const Index begin = patch.cell_start[first];
-    while (last < grid.cells() && (last == first || patch.cell_start[last + 1] - begin <= kRowsOfPiece))
-      ++last;
+  for (std::span<const Index> left = patch.cells, cells; !left.empty(); left = left.subspan(cells.size())) {
+    const Index begin = patch.cell_start[left.front()];
+    std::size_t count = 1;
+    while (count < left.size() && patch.cell_start[left[count] + 1] - begin <= kRowsOfPiece) ++count;
+    cells = left.first(count);
     rows.clear();
-    for (Index i = begin; i < patch.cell_start[last]; ++i)
+    for (Index i = begin; i < patch.cell_start[cells.back() + 1]; ++i)
       if (!patch.wall[i]) rows.push_back(i);
     if (rows.empty()) continue;
-    piece.build_piece(patch, grid, 0, first, last);
+    piece.build_piece(patch, grid, 0, cells);
     piece.refresh(patch, s.constants->kernel, rows);
     with_kernel_of(*s.constants, [&](auto d, auto kernel) {
       parallel_for(static_cast<std::ptrdiff_t>(rows.size()), [&](std::ptrdiff_t k) {

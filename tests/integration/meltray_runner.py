@@ -20,7 +20,7 @@ ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive"}
 
 # What may differ between two runs of the same case: how long they took, in how many sessions, on how many threads.
 SESSION_KEYS = {"wall_seconds", "session_wall_seconds", "session_start_s", "resumed", "forked_from", "peak_memory_bytes",
-                "wall_seconds_per_simulated_ms", "time_by_part", "threads"}
+                "wall_seconds_per_simulated_ms", "time_by_part", "memory_by_part_bytes", "threads"}
 SESSION_STATE = {"run/wall_seconds", "run/resumed"}
 
 

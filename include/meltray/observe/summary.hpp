@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "meltray/scene/simulation.hpp"
 
@@ -26,6 +28,8 @@ struct RunRecord {
   std::string forked_from;      ///< folder and time, empty for an ordinary run
   double checkpoint_time = -1;  ///< [s]; negative: none
   int threads = 1;
+  /// Bytes by part when a row of history.csv was last written.
+  std::vector<std::pair<std::string, std::size_t>> memory;
 };
 
 /// summary.json as text. `simulation` may be null when it could not be built.

@@ -43,9 +43,9 @@ class PairList {
   /// the solid particles that have a liquid neighbour. `skin` [m] widens the support, so that the list holds
   /// while particles move by less than half of it.
   void build(const Patch& patch, const CellGrid& grid, double skin, const std::vector<std::uint8_t>& extra);
-  /// Only the rows of the particles in cells [first, last), without dummies of faces: a list in pieces, for
-  /// what is needed once. The other rows are undefined.
-  void build_piece(const Patch& patch, const CellGrid& grid, double skin, Index first, Index last);
+  /// Only the rows of the particles in `cells`, consecutive ones of patch.cells, without dummies of faces: a
+  /// list in pieces, for what is needed once. The other rows are undefined.
+  void build_piece(const Patch& patch, const CellGrid& grid, double skin, std::span<const Index> cells);
   /// Evaluates x_ij, W_ij and F_ij at the patch's current positions. Without it the list holds neighbours
   /// only.
   void refresh(const Patch& patch, KernelType kernel);
