@@ -121,6 +121,10 @@ std::vector<Key> limit_keys() {
       number("time.beam_travel", "focal radius", range, MELTRAY_AT(time.beam_travel),
              "Way of the beam in one step.")
           .only_if(beam),
+      number("time.laser_heating_k", "K", above(0), MELTRAY_AT(time.laser_heating),
+             "Largest rise of a particle's temperature in one step by the light that it absorbs, over the "
+             "solid's heat capacity: light stands still over a step, and error control does not see it.")
+          .only_if(beam),
   };
   const Need limited = {"time.fixed_step_s = 0, or time.method = \"multirate\" with time.fast_step_s = 0",
                         {"time.fixed_step_s", "time.method", "time.fast_step_s"},

@@ -170,6 +170,13 @@ std::vector<StepLimit> Model::step_limits() {
     const double rate = losses_.rate(stage);
     if (rate > 0) limits.push_back({time.cfl_thermal / rate, "evaporation"});
   }
+  if (!laser_power.empty()) {
+    const double hottest = parallel_max(
+        static_cast<std::ptrdiff_t>(stage.heated.size()), 0.0,
+        [&](std::ptrdiff_t k) { return laser_power[stage.heated[k]] / patch.mass[stage.heated[k]]; });
+    if (hottest > 0)
+      limits.push_back({time.laser_heating * constants_.material.heat_capacity_solid / hottest, "laser"});
+  }
   if (scene_.laser && scene_.laser->beam.feed > 0)
     limits.push_back(
         {time.beam_travel * 0.5 * scene_.laser->beam.focal_diameter / scene_.laser->beam.feed, "beam"});

@@ -147,8 +147,9 @@ struct Time {
   double cfl_acoustic = 0.25;
   double cfl_advective = 0.2, cfl_capillary = 0.25, cfl_force = 0.25;
   double cfl_viscous = 0.8,
-         cfl_thermal = 0.8;   ///< shares of the Gershgorin stability bound of explicit terms
-  double beam_travel = 0.25;  ///< of the focal radius per step
+         cfl_thermal = 0.8;     ///< shares of the Gershgorin stability bound of explicit terms
+  double beam_travel = 0.25;    ///< of the focal radius per step
+  double laser_heating = 1000;  ///< by the light that a particle absorbs, per step [K]; as atol_temperature
   PartitionChoice conduction = PartitionChoice::automatic, viscosity = PartitionChoice::automatic,
                   interface_viscosity = PartitionChoice::automatic, evaporation = PartitionChoice::automatic;
   double linear_tolerance = 1e-6;  ///< of the implicit solves, relative

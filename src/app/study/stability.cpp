@@ -102,8 +102,9 @@ const Parameter& find(const std::string& name, const scene::Scene& scene) {
 
 /// Every limit of the step times `factor`; the constant step where there is one.
 void scale_steps(scene::Time& time, double factor) {
-  for (double* share : {&time.cfl_advective, &time.cfl_capillary, &time.cfl_force, &time.cfl_viscous,
-                        &time.cfl_thermal, &time.beam_travel, &time.integrator.fixed_step})
+  for (double* share :
+       {&time.cfl_advective, &time.cfl_capillary, &time.cfl_force, &time.cfl_viscous, &time.cfl_thermal,
+        &time.beam_travel, &time.laser_heating, &time.integrator.fixed_step})
     *share *= factor;
   if (time.integrator.max_step < 1e300) time.integrator.max_step *= factor;
 }

@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Strong light on cold metal: light stands still over a step, so that neither error control nor any limit of the flow,
+which has not begun, keeps the first step from heating a particle far beyond boiling.
+
+usage: cold_start_test.py PROGRAM [unittest options]
+"""
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
+# pylint: disable=wrong-import-position
+from meltray_runner import REPOSITORY, Scratch, history, main, run, summary  # noqa: E402
+
+WELD = REPOSITORY / "validation" / "studies" / "weld.toml"
+# No output cuts the first step short: it was 34 us long, and its particles left at 2 km/s.
+LIGHT = ["--set", "laser.power_w=4000", "--set", "output.interval_s=1e-4", "--set", "time.end_s=1e-4"]
+
+
+class ColdStart(Scratch):
+    def test_first_steps_heat_no_further_than_asked(self):
+        folder = run(WELD, self.folder / "run", *LIGHT, "--set", "time.laser_heating_k=400")
+        limiter = summary(folder)["limiter"]
+        self.assertGreater(limiter["laser"], 0)
+        # Boiling is 2,800 K away: seven steps of 400 K, and a last one that is free to overshoot.
+        self.assertGreater(summary(folder)["steps"], 7)
+        self.assertLess(history(folder)["max_temperature_k"].max(), 5000)
+
+    def test_limit_is_a_key(self):
+        """Without the limit the first step is longer."""
+        steps = {}
+        for heating in (200, 800):
+            folder = run(WELD, self.folder / f"run{heating}", *LIGHT, "--until", "1e-5", "--set",
+                         f"time.laser_heating_k={heating}")
+            steps[heating] = summary(folder)["steps"]
+        self.assertGreater(steps[200], steps[800])
+
+
+if __name__ == "__main__":
+    main()
