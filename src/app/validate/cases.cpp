@@ -34,6 +34,8 @@ const std::vector<ValidationCase>& validation_cases() {
       {1, "elastic_plate", "clamped elastic plate that swings: period, amplitude, damping", elastic_plate},
       {2, "natural_convection", "heated square cavity, Ra 1e3 to 1e5: Nusselt number, speeds",
        natural_convection},
+      {2, "expansion_convection", "heated open tank, WCSPH: thermal expansion against Boussinesq's buoyancy",
+       expansion_convection},
       {2, "gallium_melting", "melting from a hot wall with convection: liquid share and front over time",
        gallium_melting},
       {2, "hydrostatic", "tank at rest: pressure, speed and density, both solvers, both density diffusions",

@@ -45,6 +45,7 @@ Rows oscillating_drop(const Setting& setting);
 Rows contact_angle(const Setting& setting);
 Rows marangoni_cavity(const Setting& setting);
 Rows natural_convection(const Setting& setting);
+Rows expansion_convection(const Setting& setting);
 Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
 Rows hydrostatic(const Setting& setting);
