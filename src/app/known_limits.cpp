@@ -23,10 +23,11 @@ void step_factors(const Scene& s, std::vector<std::string>& found) {
   if (s.time.integrator.fixed_step > 0) return;
   const scene::Time usual;
   const double allowed = s.laser ? kWeldSteps : kPoolSteps;
-  const std::array<std::pair<const char*, double>, 3> factors = {
+  const std::array<std::pair<const char*, double>, 4> factors = {
       {{"cfl_advective", s.time.cfl_advective / usual.cfl_advective},
        {"cfl_capillary", s.time.cfl_capillary / usual.cfl_capillary},
-       {"cfl_force", s.time.cfl_force / usual.cfl_force}}};
+       {"cfl_force", s.time.cfl_force / usual.cfl_force},
+       {"laser_heating_k", s.time.laser_heating / usual.laser_heating}}};
   for (const auto& [name, factor] : factors)
     if (factor > allowed)
       found.push_back(

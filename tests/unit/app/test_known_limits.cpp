@@ -29,6 +29,14 @@ TEST_CASE("long steps are named, earlier for a weld than for a pool") {
   CHECK(beyond_known_limits(s).size() == 1);
 }
 
+TEST_CASE("light that may heat a particle far in one step is named") {
+  scene::Scene s;
+  s.laser.emplace();
+  s.time.laser_heating *= 5;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("time.laser_heating_k: 5 times"));
+}
+
 TEST_CASE("stiff interfaces under the projection in every stage are named") {
   scene::Scene s;
   s.terms.interface_viscosity = true;
