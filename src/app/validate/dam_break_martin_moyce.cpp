@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
+#include "app/validate/sampling.hpp"
 #include "app/validate/scenes.hpp"
 #include "app/validate/table.hpp"
 
@@ -52,32 +54,18 @@ double at(const Trace& trace, double time) {
   return std::nan("");
 }
 
-/// Slope of the straight line through some points.
-double slope(const std::vector<double>& time, const std::vector<double>& front) {
-  const auto n = static_cast<double>(time.size());
-  double t = 0, x = 0, tt = 0, tx = 0;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    t += time[k];
-    x += front[k];
-    tt += time[k] * time[k];
-    tx += time[k] * front[k];
-  }
-  return (n * tx - t * x) / (n * tt - t * t);
-}
-
 /// Speed of the front between two times, simulated and measured: lines through it at the measured times, for
 /// it speeds up at first and the measured points are not spread evenly.
 Row speed_row(const std::string& model, const Trace& trace, const Table& reference, double from, double until,
               double tolerance, const Measured& how) {
-  std::vector<double> times, simulated, measured;
+  std::map<double, double> simulated, measured;
   for (std::size_t k = 0; k < reference.rows(); ++k) {
     const double time = reference.number(k, "time");
     if (time < from || time > until) continue;
-    times.push_back(time);
-    simulated.push_back(at(trace, time));
-    measured.push_back(reference.number(k, "front"));
+    simulated[time] = at(trace, time);
+    measured[time] = reference.number(k, "front");
   }
-  return relative_row(model + ": mean speed of the front", slope(times, simulated), slope(times, measured),
+  return relative_row(model + ": mean speed of the front", slope_of_line(simulated), slope_of_line(measured),
                       tolerance, how);
 }
 

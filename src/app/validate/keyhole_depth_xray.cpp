@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/validate/cases.hpp"
+#include "app/validate/sampling.hpp"
 #include "app/validate/scenes.hpp"
 #include "app/validate/table.hpp"
 #include "meltray/observe/history.hpp"
@@ -53,19 +54,6 @@ double mean_depth(const std::filesystem::path& folder, double end) {
   return sum / count;
 }
 
-/// Straight line through depths over powers: slope by least squares [m/W].
-double slope(const std::map<double, double>& depths) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const auto& [power, depth] : depths) {
-    n += 1;
-    x += power;
-    y += depth;
-    xx += power * power;
-    xy += power * depth;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
 /// Depth over power of one series, measured and simulated.
 struct Series {
   std::map<double, double> measured, simulated;
@@ -74,8 +62,8 @@ struct Series {
 void judge_series(const std::string& name, const Series& s, const std::string& source, Rows& rows) {
   if (s.simulated.size() < 2) return;
   const Measured how{"", 0, source};
-  rows.push_back(
-      relative_row(name + ": slope [mm/kW]", 1e6 * slope(s.simulated), 1e6 * slope(s.measured), 0.3, how));
+  rows.push_back(relative_row(name + ": slope [mm/kW]", 1e6 * slope_of_line(s.simulated),
+                              1e6 * slope_of_line(s.measured), 0.3, how));
   double fall = 0, before = 0;
   for (const auto& [power, depth] : s.simulated) {
     fall = std::max(fall, before - depth);

@@ -34,4 +34,16 @@ Peak peak(const std::function<double(double)>& f, double low, double high, int c
   return {b - 0.25 * (a - c) * shift, low + (k + shift) * step};
 }
 
+double slope_of_line(const std::map<double, double>& values) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const auto& [at, value] : values) {
+    n += 1;
+    x += at;
+    y += value;
+    xx += at * at;
+    xy += at * value;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
 }  // namespace meltray::app

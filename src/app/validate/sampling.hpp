@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "meltray/particles/particles.hpp"
@@ -19,5 +20,8 @@ struct Peak {
   double value = 0, at = 0;
 };
 Peak peak(const std::function<double(double)>& f, double low, double high, int count);
+
+/// Slope of the straight line through values over their places, by least squares; two places at least.
+double slope_of_line(const std::map<double, double>& values);
 
 }  // namespace meltray::app

@@ -44,3 +44,8 @@ TEST_CASE("sampling is exact for linear fields, a peak for parabolas") {
   CHECK(top.at == Approx(0.37));
   CHECK(top.value == Approx(1.0));
 }
+
+TEST_CASE("the line of least squares has the slope of a line, and that of scattered points") {
+  CHECK(slope_of_line({{1, 5}, {2, 7}, {5, 13}}) == Approx(2));
+  CHECK(slope_of_line({{-1, 0}, {0, 3}, {1, 0}, {2, 3}}) == Approx(0.6));
+}
