@@ -36,10 +36,6 @@ template <class Rests>
 void BulkConduction::assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests) {
   const Index n = patch_.size();
   const auto& material = constants.material;
-  resize_anew(neighbour_, pairs.pairs());
-  resize_anew(k_, pairs.pairs());
-  row_begin_.resize(n);
-  row_end_.resize(n);
   lambda_.resize(n);
   missing_.resize(n);
   at_rest_.resize(n);
@@ -47,6 +43,19 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
     lambda_[i] = patch_.wall[i] ? 0.0 : material.conductivity(patch_.h[i]);
     at_rest_[i] = rests(patch_.global[i]);
   });
+  // What touches a face of the box or the melt exchanges heat with them in the state.
+  const auto exchange_heat = [&](Index i, Index j) {
+    return !patch_.wall[j] && !patch_.liquid[j] && !(at_rest_[i] && at_rest_[j]);
+  };
+  start_.assign(n + 1, 0);
+  parallel_for(n, [&](Index i) {
+    if (patch_.liquid[i]) return;
+    for (Index q = pairs.begin(i); q < pairs.end(i); ++q)
+      start_[i + 1] += exchange_heat(i, pairs.neighbour(q));
+  });
+  for (Index i = 0; i < n; ++i) start_[i + 1] += start_[i];
+  resize_anew(neighbour_, start_[n]);
+  resize_anew(k_, start_[n]);
   const double scale = 1 / constants.lattice.second_moment;
   sph::with_dim(constants.dim, [&](auto d) {
     constexpr int D = d;
@@ -73,25 +82,23 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
       });
       parallel_for(n, [&](Index i) {
         const double vi = volume(i), li = lambda_[i], hi = patch_.smoothing[i];
-        Index out = row_begin_[i] = pairs.begin(i);
-        const Index last = patch_.liquid[i] ? out : pairs.end(i);  // melt belongs to the state
-        for (Index q = out; q < last; ++q) {
+        if (patch_.liquid[i]) return;
+        Index out = start_[i];
+        for (Index q = pairs.begin(i); q < pairs.end(i); ++q) {
           const Index j = pairs.neighbour(q);
-          if (patch_.wall[j] || patch_.liquid[j] || (at_rest_[i] && at_rest_[j])) continue;
+          if (!exchange_heat(i, j)) continue;
           const double f = Kernel::f(distance(i, j), 2 / (hi + patch_.smoothing[j]));
-          if (f == 0) continue;
           neighbour_[out] = j;
           // Rounded alike for (i, j) and (j, i), so that heat stays exact.
           k_[out++] = static_cast<float>(conduction_coefficient(vi, volume(j), li, lambda_[j], scale * f) *
                                          along_surface(missing_[i], missing_[j], constants.lattice));
         }
-        row_end_[i] = out;
       });
     });
   });
   rate_ = parallel_max(n, 0.0, [&](std::ptrdiff_t i) {
     double sum = 0;
-    for (Index q = row_begin_[i]; q < row_end_[i]; ++q) sum -= k_[q];
+    for (Index q = start_[i]; q < start_[i + 1]; ++q) sum -= k_[q];
     return sum / patch_.mass[i] * material.temperature_slope(patch_.h[i]);
   });
 }
@@ -116,9 +123,9 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
       double sum = 0;
       const double ti = temperature_[i];
       const int si = skip_[i];
-      const Index last = row_end_[i];
+      const Index last = start_[i + 1];
 #pragma omp simd reduction(+ : sum)
-      for (Index q = row_begin_[i]; q < last; ++q) {
+      for (Index q = start_[i]; q < last; ++q) {
         const Index j = neighbour_[q];
         const int both = si + skip_[j];
         sum += both < 2 ? static_cast<double>(k_[q]) * (ti - temperature_[j]) : 0.0;
@@ -135,8 +142,8 @@ void BulkConduction::exchange(const SceneConstants& constants, double dt,
 }
 
 std::size_t BulkConduction::bytes() const {
-  return patch_.bytes() + held_bytes(neighbour_, row_begin_, row_end_, k_, lambda_, missing_, temperature_,
-                                     gain_, at_rest_, skip_);
+  return patch_.bytes() +
+         held_bytes(neighbour_, start_, k_, lambda_, missing_, temperature_, gain_, at_rest_, skip_);
 }
 
 }  // namespace meltray::terms

@@ -27,8 +27,8 @@ class BulkConduction {
   void assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests);
 
   Patch patch_;
-  /// Row i holds the entries from row_begin_[i] to row_end_[i].
-  std::vector<Index> neighbour_, row_begin_, row_end_;
+  /// Row i holds the entries from start_[i] to start_[i + 1].
+  std::vector<Index> start_, neighbour_;
   std::vector<float> k_;
   std::vector<double> lambda_, missing_, temperature_, gain_;
   std::vector<std::uint8_t> at_rest_, skip_;
