@@ -43,13 +43,13 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
     lambda_[i] = patch_.wall[i] ? 0.0 : material.conductivity(patch_.h[i]);
     at_rest_[i] = rests(patch_.global[i]);
   });
-  // What touches a face of the box or the melt exchanges heat with them in the state.
+  // Melt and the faces of the box exchange their heat in the state.
+  const auto solid = [&](Index i) { return !patch_.wall[i] && !patch_.liquid[i]; };
   const auto exchange_heat = [&](Index i, Index j) {
-    return !patch_.wall[j] && !patch_.liquid[j] && !(at_rest_[i] && at_rest_[j]);
+    return solid(i) && solid(j) && !(at_rest_[i] && at_rest_[j]);
   };
   start_.assign(n + 1, 0);
   parallel_for(n, [&](Index i) {
-    if (patch_.liquid[i]) return;
     for (Index q = pairs.begin(i); q < pairs.end(i); ++q)
       start_[i + 1] += exchange_heat(i, pairs.neighbour(q));
   });
@@ -70,7 +70,7 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
       // Particles at rest count as inside: their neighbours need not all be in the patch.
       parallel_for(n, [&](Index i) {
         missing_[i] = 0;
-        if (patch_.wall[i] || patch_.liquid[i] || at_rest_[i]) return;
+        if (!solid(i) || at_rest_[i]) return;
         if (surrounded(pairs, i, constants.lattice)) return;
         double sum = volume(i) * Kernel::w(0.0, 1 / patch_.smoothing[i]);
         for (Index q = pairs.begin(i); q < pairs.end(i); ++q) {
@@ -82,7 +82,6 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
       });
       parallel_for(n, [&](Index i) {
         const double vi = volume(i), li = lambda_[i], hi = patch_.smoothing[i];
-        if (patch_.liquid[i]) return;
         Index out = start_[i];
         for (Index q = pairs.begin(i); q < pairs.end(i); ++q) {
           const Index j = pairs.neighbour(q);

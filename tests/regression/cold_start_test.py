@@ -28,7 +28,7 @@ class ColdStart(Scratch):
         self.assertLess(history(folder)["max_temperature_k"].max(), 5000)
 
     def test_limit_is_a_key(self):
-        """Without the limit the first step is longer."""
+        """The less a step may heat, the more steps."""
         steps = {}
         for heating in (200, 800):
             folder = run(WELD, self.folder / f"run{heating}", *LIGHT, "--until", "1e-5", "--set",
