@@ -2,6 +2,7 @@
 #include "meltray/particles/patch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "meltray/core/collect.hpp"
@@ -63,13 +64,26 @@ void PatchSelector::unmark() {
   marked_cells_.clear();
 }
 
-/// Takes a cell and those within `reach` cells of it into the selection.
-void PatchSelector::mark(Index cell, Index reach) {
+void PatchSelector::mark(Index cell) {
+  if (!marked_[cell]) marked_cells_.push_back(cell);
+  marked_[cell] = 1;
+}
+
+/// Marks the cells that may hold something within `reach` cell widths of the moving particles of a cell.
+void PatchSelector::mark_near(const Particles& particles, Index cell, Index reach) {
   if (core_[cell]) return;
   core_[cell] = 1;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  for (int c = 0; c < particles.dim; ++c) {
+    const auto [least, most] = std::minmax_element(
+        moving_sorted_.begin() + moving_start_[cell], moving_sorted_.begin() + moving_start_[cell + 1],
+        [&](Index a, Index b) { return particles.x[c][a] < particles.x[c][b]; });
+    low[c] = particles.x[c][*least];
+    high[c] = particles.x[c][*most];
+  }
+  const double far2 = std::pow(reach * grid_.width(), 2);
   grid_.for_block(cell, reach, [&](Index k) {
-    if (!marked_[k]) marked_cells_.push_back(k);
-    marked_[k] = 1;
+    if (grid_.distance2(k, low, high) <= far2) mark(k);
   });
 }
 
@@ -77,9 +91,9 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
                                      Index reach) {
   unmark();
   sort_moving(particles);
-  for (const Index cell : moving_cell_) mark(cell, reach);
+  for (const Index cell : moving_cell_) mark_near(particles, cell, reach);
   const auto x = view(particles.x);
-  for (Index i : also) mark(grid_.cell(x, i), reach);
+  for (Index i : also) grid_.for_block(grid_.cell(x, i), 1, [&](Index k) { mark(k); });
   std::sort(marked_cells_.begin(), marked_cells_.end());
   fill(particles, patch);
 }
@@ -87,7 +101,12 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
 void PatchSelector::select_around(const Particles& particles, std::span<const Index> centres, Patch& patch) {
   unmark();
   const auto x = view(particles.x);
-  for (Index i : centres) mark(grid_.cell(x, i), 1);
+  for (Index i : centres) {
+    const Index cell = grid_.cell(x, i);
+    if (core_[cell]) continue;
+    core_[cell] = 1;
+    grid_.for_block(cell, 1, [&](Index k) { mark(k); });
+  }
   std::sort(marked_cells_.begin(), marked_cells_.end());
   sort_moving(particles);
   fill(particles, patch);

@@ -146,16 +146,16 @@ std::size_t Model::term_bytes() const {
   const std::size_t dim = constants_.dim, particles = stage.size();
   const bool projected = flows() && !weakly_compressible(), viscous = t.viscosity || t.interface_viscosity;
   // Coefficients of pairs: of the viscosities, of conduction, of the Poisson matrix with its columns.
-  const std::size_t of_pair = sizeof(float) * ((t.viscosity ? 1 : 0) + (t.interface_viscosity ? dim : 0)) +
-                              (t.conduction ? sizeof(double) : 0) +
-                              (projected ? sizeof(float) + sizeof(Index) : 0);
+  const std::size_t of_pair =
+      sizeof(float) * ((t.viscosity ? 1 : 0) + (t.interface_viscosity ? 1 : 0) + (t.conduction ? 1 : 0)) +
+      (projected ? sizeof(float) + sizeof(Index) : 0);
   // Fields: rates, and of each linear system its diagonal, the solver's vectors, right-hand side and
   // solution.
   const std::size_t of_particle = (flows() ? dim : 0) + (weakly_compressible() ? 1 : 0) +
                                   (shifting_.coefficient > 0 ? dim : 0) + (viscous ? 5 * dim + 5 : 0) +
                                   (stage.heated.empty() ? 0 : 1) + (t.conduction ? 10 : 0) +
                                   (projected ? 12 : 0);
-  return pairs.pairs() * of_pair + particles * of_particle * sizeof(double);
+  return pairs.slots() * of_pair + particles * of_particle * sizeof(double);
 }
 
 void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
@@ -382,6 +382,20 @@ void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
       .add_acceleration(stage, view(static_cast<const Patch&>(patch).v), acceleration);
 }
 
+/// Where the surface stands still within a step, so does the force along it.
+void Model::add_frozen_marangoni(const MutField& acceleration) {
+  if (!marangoni_valid_) {
+    for (int c = 0; c < constants_.dim; ++c) along_surface_[c].assign(stage.size(), 0.0);
+    marangoni_.add_acceleration(stage, view(along_surface_));
+    marangoni_valid_ = true;
+  }
+  for (int c = 0; c < constants_.dim; ++c)
+    parallel_for(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
+      const Index i = stage.moving[k];
+      acceleration[c][i] += along_surface_[c][i];
+    });
+}
+
 void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
   if (viscous(implicit_part).any()) {
     add_viscous(implicit_part, rates.acceleration);
@@ -394,7 +408,7 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
     crossings.gravity = force_gained();
   }
   if (!scene_.terms.marangoni) return;
-  if (weakly_compressible())
+  if (weakly_compressible() || projects_steps())
     add_frozen_marangoni(rates.acceleration);
   else
     marangoni_.add_acceleration(stage, rates.acceleration);

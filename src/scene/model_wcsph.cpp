@@ -67,20 +67,6 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   note_largest_acceleration();
 }
 
-/// The surface stands still within a step, and so does the force along it.
-void Model::add_frozen_marangoni(const MutField& acceleration) {
-  if (!marangoni_valid_) {
-    for (int c = 0; c < constants_.dim; ++c) along_surface_[c].assign(stage.size(), 0.0);
-    marangoni_.add_acceleration(stage, view(along_surface_));
-    marangoni_valid_ = true;
-  }
-  for (int c = 0; c < constants_.dim; ++c)
-    parallel_for(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
-      const Index i = stage.moving[k];
-      acceleration[c][i] += along_surface_[c][i];
-    });
-}
-
 double Model::acoustic_step(double speed) const {
   // The factor on alpha is the viscous part of the limit, Monaghan 1989.
   const double c = scene_.flow.sound_speed * (1 + 0.6 * acoustic_->artificial.alpha);

@@ -159,11 +159,9 @@ void PairList::build(const Patch& patch, const CellGrid& grid, double skin,
   if (more) search(patch, grid, skin, patch.cells, kCellsPerBlock);
 
   next_to_wall_.assign(n, 0);
-  start_.assign(n + 1, 0);
-  for (const Block& b : blocks_)
-    for (std::size_t r = 0; r < b.row.size(); ++r) start_[b.row[r] + 1] = b.count[r];
-  for (Index i = 0; i < n; ++i) start_[i + 1] += start_[i];
-  resize_anew(j_, start_[n]);
+  start_.resize(n + 1);
+  count_.resize(n);
+  place_rows(0, n);
   copy_blocks(patch);
 }
 
@@ -177,15 +175,27 @@ void PairList::build_piece(const Patch& patch, const CellGrid& grid, double skin
   wanted_.resize(n);
   next_to_wall_.resize(n);
   start_.resize(n + 1);
+  count_.resize(n);
   for (Index i = begin; i < end; ++i) wanted_[i] = !patch.wall[i];
   search(patch, grid, skin, cells, kCellsPerBlockOfPiece);
 
-  std::fill(start_.begin() + begin, start_.begin() + end + 1, 0);
-  for (const Block& b : blocks_)
-    for (std::size_t r = 0; r < b.row.size(); ++r) start_[b.row[r] + 1] = b.count[r];
-  for (Index i = begin; i < end; ++i) start_[i + 1] += start_[i];
-  resize_anew(j_, start_[end]);
+  place_rows(begin, end);
   copy_blocks(patch);
+}
+
+/// Places for the rows [begin, end) that the blocks have found.
+void PairList::place_rows(Index begin, Index end) {
+  std::fill(count_.begin() + begin, count_.begin() + end, 0);
+  pairs_ = 0;
+  for (const Block& b : blocks_)
+    for (std::size_t r = 0; r < b.row.size(); ++r) {
+      count_[b.row[r]] = b.count[r];
+      pairs_ += b.count[r];
+    }
+  start_[begin] = 0;
+  for (Index i = begin; i < end; ++i)
+    start_[i + 1] = start_[i] + (count_[i] + kLaneCount - 1) / kLaneCount * kLaneCount;
+  resize_anew(j_, start_[end]);
 }
 
 /// The rows that the blocks have found, to their places in the list.
@@ -197,6 +207,7 @@ void PairList::copy_blocks(const Patch& patch) {
     for (std::size_t r = 0; r < block.row.size(); ++r) {
       const Index row = block.row[r];
       std::copy_n(block.entries.begin() + k, block.count[r], j_.begin() + start_[row]);
+      std::fill(j_.begin() + end(row), j_.begin() + filled_end(row), row);
       std::uint8_t wall = 0;
       for (Index e = 0; e < block.count[r]; ++e) wall |= patch.wall[block.entries[k + e]];
       next_to_wall_[row] = wall != 0;
@@ -214,9 +225,9 @@ void PairList::refresh(const Patch& patch, KernelType kernel, const std::vector<
 }
 
 void PairList::refresh_with(const Patch& patch, KernelType kernel, const std::vector<Index>* some) {
-  for (int c = 0; c < dim_; ++c) resize_anew(dx_[c], pairs());
-  resize_anew(w_, pairs());
-  resize_anew(f_, pairs());
+  for (int c = 0; c < dim_; ++c) resize_anew(dx_[c], slots());
+  resize_anew(w_, slots());
+  resize_anew(f_, slots());
   const bool periodic = std::any_of(period_.begin(), period_.begin() + dim_, [](double p) { return p > 0; });
   with_dim(dim_, [&](auto d) {
     with_kernel<d>(kernel, [&](auto k) {
@@ -241,22 +252,20 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
   const auto period = period_;
   const auto refresh_row = [&](Index i) {
     const double hi = h[i];
-    double xi[D];
-    for (int c = 0; c < D; ++c) xi[c] = x[c][i];
-    const Index first = start_[i], last = start_[i + 1];
-#pragma omp simd
-    for (Index k = first; k < last; ++k) {
-      double r2 = 0;
+    const Index last = filled_end(i);
+    for (Index k = start_[i]; k < last; k += kLaneCount) {
+      Lanes r2 = 0;
       for (int c = 0; c < D; ++c) {
-        double s = xi[c] - x[c][j[k]];
-        if constexpr (Periodic) s -= period[c] * std::rint(s * inverse_period[c]);
-        dx[c][k] = static_cast<float>(s);
+        Lanes s = x[c][i] - gather(x[c], j + k);
+        if constexpr (Periodic) s -= period[c] * nearbyint(s * inverse_period[c]);
+        store(dx[c] + k, s);
         r2 += s * s;
       }
-      const double r = std::sqrt(r2), inv_h = 2 / (hi + h[j[k]]);
-      w[k] = static_cast<float>(Kernel::w(r, inv_h));
-      f[k] = static_cast<float>(Kernel::f(r, inv_h));
+      const Lanes r = sqrt(r2), inv_h = 2 / (hi + gather(h, j + k));
+      store(w + k, Kernel::w(r, inv_h));
+      store(f + k, Kernel::f(r, inv_h));
     }
+    for (Index k = end(i); k < last; ++k) w[k] = f[k] = 0;
   };
   if (some)
     parallel_for(static_cast<std::ptrdiff_t>(some->size()),
@@ -266,7 +275,8 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
 }
 
 std::size_t PairList::bytes() const {
-  std::size_t n = held_bytes(start_, j_, w_, f_, next_to_melt_, next_to_wall_, wanted_) + held_bytes(dx_);
+  std::size_t n =
+      held_bytes(start_, count_, j_, w_, f_, next_to_melt_, next_to_wall_, wanted_) + held_bytes(dx_);
   for (const Block& b : blocks_)
     n += held_bytes(b.row, b.count, b.entries, b.candidate, b.candidate_h, b.near);
   return n;

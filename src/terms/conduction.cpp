@@ -11,7 +11,7 @@ void ConductionOperator::assemble(const Stage& s) {
   const Index n = s.size();
   const auto& pairs = *s.pairs;
   conductivity_.resize(n);
-  resize_anew(k_, pairs.pairs());
+  resize_anew(k_, pairs.slots());
   wall_slope_.assign(n, 0.0);
   wall_power_.assign(n, 0.0);
   parallel_for(n, [&](Index i) {
@@ -28,16 +28,16 @@ void ConductionOperator::assemble(const Stage& s) {
     const sph::LatticeSums& lattice = s.constants->lattice;
     parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t row) {
       const Index i = s.heated[row];
-      const double vi = 4 * scale * volume[i], li = lambda[i], mi = missing[i];
-      double* const k = k_.data();
+      const double vi = volume[i], li = lambda[i], mi = missing[i];
+      float* const k = k_.data();
       // A partner outside the state has conductivity 0 here, so that the pair exchanges nothing.
-      pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
-        const double lj = lambda[p.j];
-        k[p.k] = vi * volume[p.j] * li * lj / (li + lj) * p.f;
+      pairs.for_lanes<D>(i, [&](const sph::PairLanes<D>& p) {
+        const sph::Lanes lj = p.of(lambda);
+        sph::store(k + p.k, (vi * p.of(volume)) * (li * lj) / (li + lj) * (4 * scale * p.f));
       });
       if (mi > 0)
         for (Index q = pairs.begin(i); q < pairs.end(i); ++q)
-          k[q] *= along_surface(mi, missing[pairs.neighbour(q)], lattice);
+          k[q] *= static_cast<float>(along_surface(mi, missing[pairs.neighbour(q)], lattice));
       double slope = 0, power = 0;
       if (s.constants->any_isothermal && pairs.next_to_wall()[i])
         pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
@@ -76,7 +76,7 @@ void ConductionOperator::find_missing_layers(const Stage& s) {
         if (surrounded(pairs, i, s.constants->lattice)) return;
         double sum = volume[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
         sum += pairs.template sum_row<D, 1>(
-            i, [&](const sph::Pair<D>& p) { return std::array<double, 1>{volume[p.j] * p.w}; })[0];
+            i, [&](const sph::PairLanes<D>& p) { return std::array<sph::Lanes, 1>{p.of(volume) * p.w}; })[0];
         if (pairs.next_to_wall()[i])
           pairs.template for_row<D>(i, [&](const sph::Pair<D>& p) {
             if (s.patch->wall[p.j] && !s.constants->faces[s.patch->wall[p.j] - 1].isothermal)
@@ -91,16 +91,9 @@ void ConductionOperator::find_missing_layers(const Stage& s) {
 double ConductionOperator::add_heating(const Stage& s, double* heating) const {
   const auto count = static_cast<std::ptrdiff_t>(s.heated.size());
   const double* const temperature = s.temperature.data();
-  const double* const k = k_.data();
-  const Index* const neighbour = s.pairs->neighbours();
   parallel_for(count, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
-    const double ti = temperature[i];
-    double sum = 0;
-    const Index last = s.pairs->end(i);
-#pragma omp simd reduction(+ : sum)
-    for (Index q = s.pairs->begin(i); q < last; ++q) sum += k[q] * (ti - temperature[neighbour[q]]);
-    heating[i] += (sum + wall_power_[i]) / s.patch->mass[i];
+    heating[i] += (exchange(*s.pairs, i, temperature) + wall_power_[i]) / s.patch->mass[i];
   });
   return parallel_sum(count, [&](std::ptrdiff_t row) { return wall_power_[s.heated[row]]; });
 }
@@ -125,8 +118,6 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
   const auto& pairs = *s.pairs;
   const auto& material = s.constants->material;
   const double* const mass = s.patch->mass.data();
-  const double* const k = k_.data();
-  const Index* const neighbour = pairs.neighbours();
   parallel_for(count, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
     capacity_[i] = mass[i] / material.temperature_slope(s.patch->h[i]) -
@@ -137,12 +128,7 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
   const auto report = solve::conjugate_gradient<1>(
       count, [&](std::ptrdiff_t row) { return s.heated[row]; },
       [&](Index i, const std::array<const double*, 1>& in) {
-        const double ti = in[0][i];
-        double sum = 0;
-        const Index last = pairs.end(i);
-#pragma omp simd reduction(+ : sum)
-        for (Index q = pairs.begin(i); q < last; ++q) sum += k[q] * (ti - in[0][neighbour[q]]);
-        return std::array<double, 1>{capacity_[i] * ti - gamma * sum};
+        return std::array<double, 1>{capacity_[i] * in[0][i] - gamma * exchange(pairs, i, in[0])};
       },
       vectors_, {dt_.data()}, tolerance, max_iterations);
   if (!report.converged) return -1;
@@ -151,6 +137,16 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
     x[i] = dt_[i] / material.temperature_slope(s.patch->h[i]);
   });
   return report.iterations;
+}
+
+/// sum_j k_ij (T_i - T_j) [W].
+double ConductionOperator::exchange(const sph::PairList& pairs, Index i, const double* temperature) const {
+  const double ti = temperature[i];
+  const Index* const j = pairs.neighbours();
+  sph::Lanes sum = 0;
+  for (Index q = pairs.begin(i); q < pairs.filled_end(i); q += sph::kLaneCount)
+    sum += sph::load(k_.data() + q) * (ti - sph::gather(temperature, j + q));
+  return sph::sum(sum);
 }
 
 double ConductionOperator::row_sum(const sph::PairList& pairs, Index i) const {

@@ -61,9 +61,9 @@ Vector<D> pressure_of_melt(const Stage& s, Index i) {
   const double *const p = s.patch->pressure.data(), *const volume = s.volume.data();
   const std::uint8_t* const liquid = s.patch->liquid.data();
   const double own = p[i];
-  const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& q) {
-    const double g = liquid[q.j] ? -volume[q.j] * q.f * (own + p[q.j]) : 0.0;
-    std::array<double, D> out;
+  const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::PairLanes<D>& q) {
+    const sph::Lanes g = -q.of(liquid) * q.of(volume) * q.f * (own + q.of(p));
+    std::array<sph::Lanes, D> out;
     for (int c = 0; c < D; ++c) out[c] = g * q.x[c];
     return out;
   });

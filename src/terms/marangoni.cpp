@@ -11,15 +11,17 @@ namespace {
 template <int D>
 Eigen::Matrix<double, D, 1> mean_normal(const Stage& s, Index i) {
   using Vector = Eigen::Matrix<double, D, 1>;
-  Vector n;
+  const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
+    const sph::Lanes weight = p.of(s.surface.data()) * p.w;
+    std::array<sph::Lanes, D> out;
+    for (int c = 0; c < D; ++c) out[c] = weight * p.of(s.normal[c].data());
+    return out;
+  });
+  Vector n(sum.data());
   with_kernel<D>(s.constants->kernel, [&](auto kernel) {
     using Kernel = decltype(kernel);
     const double self = s.surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
-    for (int c = 0; c < D; ++c) n[c] = self * s.normal[c][i];
-  });
-  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-    const double weight = s.surface[p.j] * p.w;
-    for (int c = 0; c < D; ++c) n[c] += weight * s.normal[c][p.j];
+    for (int c = 0; c < D; ++c) n[c] += self * s.normal[c][i];
   });
   const double norm = n.norm();
   return norm > 0 ? Vector(n / norm) : Vector(Vector::Zero());
@@ -33,6 +35,7 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
     using Matrix = Eigen::Matrix<double, D, D>;
     using Vector = Eigen::Matrix<double, D, 1>;
     const double rho = s.constants->density;
+    const double *const volume = s.volume.data(), *const temperature = s.temperature.data();
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       if (s.loose[i]) return;
@@ -42,16 +45,26 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
       double across = 0;  // -n.grad c
       for (int c = 0; c < D; ++c) across -= n[c] * s.grad_c[c][i];
       if (across == 0) return;
-      Matrix moment = Matrix::Zero();
-      Vector gradient = Vector::Zero();
-      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-        // An adiabatic wall's dummies have no temperature of their own.
-        const int wall = s.patch->wall[p.j];
-        if (wall && !s.constants->faces[wall - 1].isothermal) return;
-        const double vf = s.volume[p.j] * p.f;
-        for (int a = 0; a < D; ++a) gradient[a] += vf * (s.temperature[p.j] - s.temperature[i]) * p.x[a];
-        sph::add_moment<D>(moment, vf, p);
+      const double ti = s.temperature[i];
+      const auto sum = s.pairs->sum_row<D, D + symmetric_count(D)>(i, [&](const sph::PairLanes<D>& p) {
+        const sph::Lanes vf = p.of(volume) * p.f, dt = p.of(temperature) - ti;
+        std::array<sph::Lanes, D + symmetric_count(D)> out;
+        for (int c = 0; c < D; ++c) out[c] = vf * dt * p.x[c];
+        sph::moments<D>(vf, p, out.data() + D);
+        return out;
       });
+      Vector gradient(sum.data());
+      Matrix moment = sph::symmetric<D>(sum.data() + D);
+      if (s.pairs->next_to_wall()[i])
+        s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+          // An adiabatic wall's dummies have no temperature of their own.
+          const int wall = s.patch->wall[p.j];
+          if (!wall || s.constants->faces[wall - 1].isothermal) return;
+          const Vector x(p.x.data());
+          const double vf = volume[p.j] * p.f;
+          gradient -= vf * (temperature[p.j] - ti) * x;
+          moment += vf * x * x.transpose();
+        });
       gradient = sph::renormalisation<D>(moment) * gradient;
       gradient -= n * n.dot(gradient);
       const double factor = slope * 2 * across / (rho * s.constants->lattice.second_moment);

@@ -24,10 +24,10 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
         const Index i = s.moving[k];
         const double inside = 1 - s.surface[i];
         if (inside == 0 || s.loose[i]) return;
-        const auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-          const double ratio = p.w * inverse_w, r2 = ratio * ratio;
-          const double g = volume[p.j] * p.f * (1 + 0.2 * r2 * r2);
-          std::array<double, D> out;
+        const auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
+          const sph::Lanes ratio = p.w * inverse_w, r2 = ratio * ratio;
+          const sph::Lanes g = p.of(volume) * p.f * (1 + 0.2 * r2 * r2);
+          std::array<sph::Lanes, D> out;
           for (int c = 0; c < D; ++c) out[c] = g * p.x[c];
           return out;
         });
@@ -46,12 +46,12 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
           du[c] = scale * sum[c];
           transport[c][i] += du[c];
         }
-        const auto gain = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-          double along = 0;
+        const auto gain = s.pairs->template sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
+          sph::Lanes along = 0;
           for (int c = 0; c < D; ++c) along += du[c] * p.x[c];
-          const double g = volume[p.j] * p.f * along;
-          std::array<double, D> out;
-          for (int c = 0; c < D; ++c) out[c] = g * (v[c][p.j] - v[c][i]);
+          const sph::Lanes g = p.of(volume) * p.f * along;
+          std::array<sph::Lanes, D> out;
+          for (int c = 0; c < D; ++c) out[c] = g * (p.of(v[c]) - v[c][i]);
           return out;
         });
         for (int c = 0; c < D; ++c) acceleration[c][i] += gain[c];

@@ -29,12 +29,12 @@ SurfaceRow<D> surface_row(const Stage& s, const sph::PairList& pairs, Index i) {
   const double* const volume = s.volume.data();
   const double site = s.area_of_spacing(), spacing = s.constants->spacing;
   SurfaceRow<D> row;
-  const Index count = pairs.end(i) - pairs.begin(i);
+  const Index count = pairs.count(i);
   if (count == 0 && !s.patch->liquid[i]) return row;  // not a row: asleep or only a neighbour
-  const auto sum = pairs.template sum_row<D, D + 2>(i, [&](const sph::Pair<D>& p) {
-    const double vf = volume[p.j] * p.f;
-    std::array<double, D + 2> out;
-    out[0] = volume[p.j] * p.w;
+  const auto sum = pairs.template sum_row<D, D + 2>(i, [&](const sph::PairLanes<D>& p) {
+    const sph::Lanes v = p.of(volume), vf = v * p.f;
+    std::array<sph::Lanes, D + 2> out;
+    out[0] = v * p.w;
     out[1] = -vf;
     for (int c = 0; c < D; ++c) out[2 + c] = vf * p.x[c];
     return out;

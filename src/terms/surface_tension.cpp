@@ -27,10 +27,10 @@ void SurfaceTension::smooth_normals(const Stage& s) const {
         const ConstField n = view(static_cast<const Components&>(previous_));
         parallel_for(s.size(), [&](Index i) {
           if (surface[i] == 0 || s.loose[i]) return;
-          auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::Pair<D>& p) {
-            const double weight = surface[p.j] * p.w;
-            std::array<double, D> out;
-            for (int c = 0; c < D; ++c) out[c] = weight * n[c][p.j];
+          auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
+            const sph::Lanes weight = p.of(surface) * p.w;
+            std::array<sph::Lanes, D> out;
+            for (int c = 0; c < D; ++c) out[c] = weight * p.of(n[c]);
             return out;
           });
           const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
@@ -61,17 +61,16 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
       if (active == 0) return;
       double ni[D];
       for (int c = 0; c < D; ++c) ni[c] = n[c][i];
-      const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::Pair<D>& p) {
-        double along = 0, bend = 0;
+      const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::PairLanes<D>& p) {
+        sph::Lanes along = 0, bend = 0, t2 = 0;
         for (int c = 0; c < D; ++c) along += p.x[c] * ni[c];
-        double t2 = 0;
         for (int c = 0; c < D; ++c) {
-          const double t = along * ni[c] - p.x[c];  // offset x_j - x_i in the tangent plane
-          bend += (n[c][p.j] - ni[c]) * t;
+          const sph::Lanes t = along * ni[c] - p.x[c];  // offset x_j - x_i in the tangent plane
+          bend += (p.of(n[c]) - ni[c]) * t;
           t2 += t * t;
         }
-        const double weight = surface[p.j] * p.w;
-        return std::array<double, 2>{weight * bend, weight * t2};
+        const sph::Lanes weight = p.of(surface) * p.w;
+        return std::array<sph::Lanes, 2>{weight * bend, weight * t2};
       });
       const double kappa = sum[1] > tiny * s.constants->lattice.shepard ? (D - 1) * sum[0] / sum[1] : 0.0;
       out[i] = active * s.constants->material.sigma(s.temperature[i]) * kappa;
@@ -89,10 +88,10 @@ void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
       parallel_for(s.size(), [&](Index i) {
         s.surface_pressure[i] = 0;
         const bool inside = s.surface[i] == 0 && s.fill[i] >= 1;
-        if (inside || s.loose[i] || s.pairs->begin(i) == s.pairs->end(i)) return;
-        const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::Pair<D>& q) {
-          const double weight = surface[q.j] * q.w;
-          return std::array<double, 2>{weight * p[q.j], weight};
+        if (inside || s.loose[i] || s.pairs->count(i) == 0) return;
+        const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::PairLanes<D>& q) {
+          const sph::Lanes weight = q.of(surface) * q.w;
+          return std::array<sph::Lanes, 2>{weight * q.of(p), weight};
         });
         const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
         const double weight = sum[1] + self;

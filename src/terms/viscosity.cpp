@@ -34,19 +34,22 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
   const Index n = s.size();
   const double rho = s.constants->density, h = s.constants->smoothing;
   c_sum_.assign(n, 0.0);
-  e2_sum_.assign(n, 0.0);
+  d_sum_.assign(n, 0.0);
   if (choice.physical) {
     mu_.resize(n);
-    resize_anew(c_, pairs.pairs());
-    parallel_for(n, [&](Index i) { mu_[i] = s.constants->material.viscosity(s.temperature[i]); });
+    resize_anew(c_, pairs.slots());
+    parallel_for(n, [&](Index i) {
+      mu_[i] = s.patch->liquid[i] ? s.constants->material.viscosity(s.temperature[i]) : -1.0;
+    });
   }
   if (choice.interface) {
     alpha_.resize(n);
-    for (int c = 0; c < s.constants->dim; ++c) resize_anew(e_[c], pairs.pairs());
+    resize_anew(d_, pairs.slots());
     parallel_for(n, [&](Index i) {
       double g = 0;
       for (int c = 0; c < s.constants->dim; ++c) g += s.grad_c[c][i] * s.grad_c[c][i];
-      alpha_[i] = alpha_of(s, i, interface, std::sqrt(g));
+      const bool own = s.patch->liquid[i] || s.patch->wall[i];
+      alpha_[i] = own ? alpha_of(s, i, interface, std::sqrt(g)) : -1.0;
     });
   }
   const double scale = 2 / s.constants->lattice.second_moment;
@@ -55,18 +58,18 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
     constexpr int D = d;
     const double* const volume = s.volume.data();
     const double *const mu = mu_.data(), *const alpha = alpha_.data();
-    const std::uint8_t *const liquid = s.patch->liquid.data(), *const wall = s.patch->wall.data();
     float* const c = c_.data();
-    float* const e[3] = {e_[0].data(), e_[1].data(), e_[2].data()};
+    float* const d_of = d_.data();
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t row) {
       const Index i = s.moving[row];
       const double vi = volume[i];
       if (choice_.physical) {
         const double mu_i = mu[i];
         // A solid or wall neighbour has the viscosity of the melt beside it.
-        pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
-          const double mu_j = liquid[p.j] ? mu[p.j] : mu_i;
-          c[p.k] = static_cast<float>(scale * (vi * volume[p.j]) * p.f * (2 * mu_i * mu_j / (mu_i + mu_j)));
+        pairs.for_lanes<D>(i, [&](const sph::PairLanes<D>& p) {
+          sph::Lanes mu_j = p.of(mu);
+          where(mu_j < 0, mu_j) = mu_i;
+          sph::store(c + p.k, scale * (vi * p.of(volume)) * p.f * (2 * mu_i * mu_j / (mu_i + mu_j)));
         });
         if (pairs.next_to_wall()[i])
           pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
@@ -74,67 +77,52 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
             const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
             c[p.k] *= static_cast<float>(face.no_slip ? no_slip_factor(s, i, p.j) : 0.0);
           });
-        double sum = 0;
-        for (Index k = pairs.begin(i); k < pairs.end(i); ++k) sum -= c[k];
-        c_sum_[i] = sum;
+        sph::Lanes sum = 0;
+        for (Index k = pairs.begin(i); k < pairs.filled_end(i); k += sph::kLaneCount) sum -= sph::load(c + k);
+        c_sum_[i] = sph::sum(sum);
       }
       if (choice_.interface) {
         const double alpha_i = alpha[i];
         // A solid neighbour adds none of its own, as in the published form: melt hotter than the ramp slides
         // along it with the physical viscosity. A face of the box damps the melt that fills the box.
-        pairs.for_row_simd<D>(i, [&](const sph::Pair<D>& p) {
-          const double alpha_j = liquid[p.j] || wall[p.j] ? alpha[p.j] : alpha_i;
-          const double d_ij =
-              strength * (alpha_i + alpha_j) * (vi * volume[p.j]) * p.f / (p.r2() + softening);
-          const double root = std::sqrt(-d_ij);
-          for (int k = 0; k < D; ++k) e[k][p.k] = static_cast<float>(root * p.x[k]);
+        sph::Lanes sum = 0;
+        pairs.for_lanes<D>(i, [&](const sph::PairLanes<D>& p) {
+          sph::Lanes alpha_j = p.of(alpha);
+          where(alpha_j < 0, alpha_j) = alpha_i;
+          const sph::Lanes d_ij =
+              strength * (alpha_i + alpha_j) * (vi * p.of(volume)) * p.f / (p.r2() + softening);
+          sph::store(d_of + p.k, d_ij);
+          sum -= sph::load(d_of + p.k) * p.r2();
         });
-        double sum = 0;
-        for (int axis = 0; axis < D; ++axis)
-          for (Index k = pairs.begin(i); k < pairs.end(i); ++k)
-            sum += static_cast<double>(e[axis][k]) * e[axis][k];
-        e2_sum_[i] = sum;
+        d_sum_[i] = sph::sum(sum);
       }
     });
   });
 }
 
-/// sum_j c_ij u_ij - (u_ij.e_ij) e_ij of one row for a velocity-like field u.
+/// sum_j c_ij u_ij + d_ij (u_ij.x_ij) x_ij of one row for a velocity-like field u.
 template <int D, bool Physical, bool Interface>
 std::array<double, D> ViscousOperator::row(const Stage& s, Index i,
                                            const std::array<const double*, D>& u) const {
-  const float* const cc = c_.data();
-  const float* const e[3] = {e_[0].data(), e_[1].data(), e_[2].data()};
-  const Index* const neighbour = s.pairs->neighbours();
-  double ui[D];
+  const float *const physical = c_.data(), *const interface = d_.data();
+  std::array<double, D> ui;
   for (int c = 0; c < D; ++c) ui[c] = u[c][i];
-  double s0 = 0, s1 = 0, s2 = 0;
-  const Index last = s.pairs->end(i);
-#pragma omp simd reduction(+ : s0, s1, s2)
-  for (Index k = s.pairs->begin(i); k < last; ++k) {
-    const Index j = neighbour[k];
-    double du[3], ek[3], along = 0;
-    for (int c = 0; c < D; ++c) {
-      du[c] = ui[c] - u[c][j];
-      if constexpr (Interface) {
-        ek[c] = e[c][k];
-        along += du[c] * ek[c];
-      }
+  return s.pairs->sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
+    std::array<sph::Lanes, D> du, force;
+    for (int c = 0; c < D; ++c) du[c] = ui[c] - p.of(u[c]);
+    force.fill(sph::Lanes(0));
+    if constexpr (Interface) {
+      sph::Lanes along = du[0] * p.x[0];
+      for (int c = 1; c < D; ++c) along += du[c] * p.x[c];
+      along *= sph::load(interface + p.k);
+      for (int c = 0; c < D; ++c) force[c] = along * p.x[c];
     }
-    const auto part = [&](int c) {
-      double f = 0;
-      if constexpr (Physical) f += cc[k] * du[c];
-      if constexpr (Interface) f -= along * ek[c];
-      return f;
-    };
-    s0 += part(0);
-    s1 += part(1);
-    if constexpr (D == 3) s2 += part(2);
-  }
-  if constexpr (D == 3)
-    return {s0, s1, s2};
-  else
-    return {s0, s1};
+    if constexpr (Physical) {
+      const sph::Lanes c_ij = sph::load(physical + p.k);
+      for (int c = 0; c < D; ++c) force[c] += c_ij * du[c];
+    }
+    return force;
+  });
 }
 
 /// Calls f(row) with row(s, i, u) compiled for the active parts.
@@ -174,7 +162,7 @@ double ViscousOperator::rate(const Stage& s, ViscousChoice part) const {
   const double physical = part.physical, interface = part.interface;
   return parallel_max(static_cast<std::ptrdiff_t>(s.moving.size()), 0.0, [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
-    return (physical * c_sum_[i] + interface * e2_sum_[i]) / s.patch->mass[i];
+    return (physical * c_sum_[i] + interface * d_sum_[i]) / s.patch->mass[i];
   });
 }
 
@@ -184,8 +172,8 @@ ViscousSolve ViscousOperator::solve(const Stage& s, double gamma, const ConstFie
                                : solve_in<3>(s, gamma, b, x, tolerance, max_iterations, vectors_3d_);
 }
 
-/// (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij x_ij - (x_ij.e_ij) e_ij; symmetric positive
-/// definite.
+/// (M - gamma K) x = M b on moving particles, K x_i = sum_j c_ij u_ij + d_ij (u_ij.x_ij) x_ij; symmetric
+/// positive definite.
 template <int D>
 ViscousSolve ViscousOperator::solve_in(const Stage& s, double gamma, const ConstField& b, const MutField& x,
                                        double tolerance, int max_iterations,
@@ -197,7 +185,7 @@ ViscousSolve ViscousOperator::solve_in(const Stage& s, double gamma, const Const
   for (int c = 0; c < D; ++c) out[c] = x[c];
   parallel_for(count, [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
-    vectors.inverse_diagonal[i] = 1 / (mass[i] + gamma * (c_sum_[i] + e2_sum_[i] / D));
+    vectors.inverse_diagonal[i] = 1 / (mass[i] + gamma * (c_sum_[i] + d_sum_[i] / D));
     for (int c = 0; c < D; ++c) vectors.r[c][i] = mass[i] * b[c][i];
   });
   solve::SolveReport report;

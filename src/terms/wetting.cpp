@@ -26,9 +26,9 @@ void Wetting::turn_normals(Stage& s) const {
       const Index i = s.moving[k];
       for (int c = 0; c < D; ++c) turned_[c][k] = s.normal[c][i];
       if (s.surface[i] == 0) return;
-      const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::Pair<D>& p) {
-        const double v = liquid[p.j] ? 0.0 : volume[p.j];
-        std::array<double, D + 1> out;
+      const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::PairLanes<D>& p) {
+        const sph::Lanes v = (1 - p.of(liquid)) * p.of(volume);
+        std::array<sph::Lanes, D + 1> out;
         out[0] = v * p.w;
         for (int c = 0; c < D; ++c) out[1 + c] = v * p.f * p.x[c];
         return out;

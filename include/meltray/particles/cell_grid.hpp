@@ -61,6 +61,22 @@ class CellGrid {
         for (Index x = low[0]; x <= high[0]; ++x) f(flat({wrap(0, x), wrap(1, y), wrap(2, z)}));
   }
 
+  /// Squared distance of a box from a cell [m^2]. The outermost cells go on to infinity, as they hold what is
+  /// outside; periodic directions are left out. Not above that of the particles in both.
+  double distance2(Index cell, const Vec3& min, const Vec3& max) const {
+    const auto k = unflatten(cell);
+    double sum = 0;
+    for (int c = 0; c < dim_; ++c) {
+      if (period_[c] > 0) continue;
+      const double width = 1 / inverse_width_[c], low = min_[c] + k[c] * width;
+      const double below = k[c] > 0 ? low - max[c] : 0.0,
+                   above = k[c] < count_[c] - 1 ? min[c] - (low + width) : 0.0;
+      const double gap = std::max({0.0, below, above});
+      sum += gap * gap;
+    }
+    return sum;
+  }
+
   /// Calls f(cell) for the cells that a box touches (no periodic images).
   template <class F>
   void for_box(const Vec3& min, const Vec3& max, F&& f) const {

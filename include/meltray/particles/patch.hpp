@@ -48,8 +48,9 @@ class PatchSelector {
 
   /// Every particle of the scene.
   void select_all(const Particles& particles, Patch& patch);
-  /// Particles within `reach` cells of a liquid particle or of one of `also`. With two cells, rows of liquid
-  /// particles, of the solid ones next to them and of `also` have all their neighbours in the patch.
+  /// Particles within `reach` widths of a cell of a liquid particle, and within one of one of `also`. With
+  /// two, rows of liquid particles, of the solid ones next to them and of `also` have all their neighbours in
+  /// the patch.
   void select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,
                         Index reach = 2);
 
@@ -83,7 +84,8 @@ class PatchSelector {
 
  private:
   void unmark();
-  void mark(Index cell, Index reach);
+  void mark(Index cell);
+  void mark_near(const Particles& particles, Index cell, Index reach);
   void fill(const Particles& particles, Patch& patch);
   void sort_moving(const Particles& particles);
   bool near_melt(const Patch& patch, Index k, Index cell, double distance) const;

@@ -11,6 +11,7 @@
 #include "meltray/core/vec.hpp"
 #include "meltray/particles/patch.hpp"
 #include "meltray/sph/kernel.hpp"
+#include "meltray/sph/lanes.hpp"
 
 /// Pair loops. Terms see a pair only through `Pair` and `sum_row`, so that the layout of the list can change
 /// without touching them.
@@ -36,7 +37,28 @@ struct Pair {
   }
 };
 
-/// Neighbours of the rows that some term needs, with their geometry. The self pair is not in the list.
+/// kLaneCount neighbours j of particle i at a time, as in `Pair`. The last of a row may be fillers: particle
+/// i itself with x, W and F of 0, so that what they add to a sum is 0.
+template <int D>
+struct PairLanes {
+  const Index* j;
+  Index k;
+  std::array<Lanes, D> x;
+  Lanes w, f;
+  /// Values of a field at the neighbours.
+  template <class T>
+  Lanes of(const T* field) const {
+    return gather(field, j);
+  }
+  Lanes r2() const {
+    Lanes s = x[0] * x[0];
+    for (int c = 1; c < D; ++c) s += x[c] * x[c];
+    return s;
+  }
+};
+
+/// Neighbours of the rows that some term needs, with their geometry. The self pair is not in the list. Rows
+/// are filled up to whole registers.
 class PairList {
  public:
   /// Finds the neighbours of liquid particles and of `extra` rows (1 per patch entry; empty: none), then of
@@ -52,11 +74,13 @@ class PairList {
   /// The same for some rows only; the others keep the geometry that they have.
   void refresh(const Patch& patch, KernelType kernel, const std::vector<Index>& rows);
 
-  Index rows() const { return static_cast<Index>(start_.size()) - 1; }
+  Index rows() const { return static_cast<Index>(count_.size()); }
   Index begin(Index i) const { return start_[i]; }
-  Index end(Index i) const { return start_[i + 1]; }
+  Index end(Index i) const { return start_[i] + count_[i]; }
+  /// The same with the fillers of the row.
+  Index filled_end(Index i) const { return start_[i + 1]; }
   /// Neighbours of row i; 0 where there is no such row.
-  Index count(Index i) const { return i < rows() ? end(i) - begin(i) : 0; }
+  Index count(Index i) const { return i < rows() ? count_[i] : 0; }
   Index neighbour(Index k) const { return j_[k]; }
   const Index* neighbours() const { return j_.data(); }
   /// 1 for solid particles with a liquid neighbour: the walls of the melt.
@@ -70,53 +94,35 @@ class PairList {
   /// Period in each direction [m]; 0 where not periodic.
   const std::array<double, 3>& period() const { return period_; }
   std::size_t bytes() const;
-  std::size_t pairs() const { return j_.size(); }
+  std::size_t pairs() const { return pairs_; }
+  /// Places of the list, fillers among them: the size of what is stored per pair.
+  std::size_t slots() const { return j_.size(); }
 
-  /// Sum over the neighbours of i of f(pair), an array of N doubles.
+  /// Sum over the neighbours of i of f(pairs), an array of N registers.
   template <int D, int N, class F>
   std::array<double, N> sum_row(Index i, F&& f) const {
-    static_assert(N >= 1 && N <= 6);
-    double s0 = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0;
-    const Index* const j = j_.data();
-    const float* const dx[3] = {dx_[0].data(), dx_[1].data(), dx_[2].data()};
-    const float *const w = w_.data(), *const fr = f_.data();
-    const Index first = start_[i], last = start_[i + 1];
-#pragma omp simd reduction(+ : s0, s1, s2, s3, s4, s5)
-    for (Index k = first; k < last; ++k) {
-      Pair<D> p;
-      p.j = j[k];
-      p.k = k;
-      p.x[0] = dx[0][k];
-      p.x[1] = dx[1][k];
-      if constexpr (D == 3) p.x[2] = dx[2][k];
-      p.w = w[k];
-      p.f = fr[k];
-      const std::array<double, N> s = f(p);
-      s0 += s[0];
-      if constexpr (N > 1) s1 += s[1];
-      if constexpr (N > 2) s2 += s[2];
-      if constexpr (N > 3) s3 += s[3];
-      if constexpr (N > 4) s4 += s[4];
-      if constexpr (N > 5) s5 += s[5];
+    std::array<Lanes, N> all;
+    all.fill(Lanes(0));
+    for (Index k = start_[i]; k < start_[i + 1]; k += kLaneCount) {
+      const std::array<Lanes, N> some = f(lanes<D>(k));
+      for (int n = 0; n < N; ++n) all[n] += some[n];
     }
-    const double all[6] = {s0, s1, s2, s3, s4, s5};
     std::array<double, N> out;
-    for (int n = 0; n < N; ++n) out[n] = all[n];
+    for (int n = 0; n < N; ++n) out[n] = sum(all[n]);
     return out;
+  }
+
+  /// Calls f(pairs) for registers of neighbours of i, for an f that writes to the places pairs.k and
+  /// following.
+  template <int D, class F>
+  void for_lanes(Index i, F&& f) const {
+    for (Index k = start_[i]; k < start_[i + 1]; k += kLaneCount) f(lanes<D>(k));
   }
 
   /// Calls f(pair) for the neighbours of i, in order.
   template <int D, class F>
   void for_row(Index i, F&& f) const {
-    for (Index k = start_[i]; k < start_[i + 1]; ++k) f(at<D>(k));
-  }
-
-  /// The same for an f that writes only to places owned by pair.k: the calls may run side by side.
-  template <int D, class F>
-  void for_row_simd(Index i, F&& f) const {
-    const Index first = start_[i], last = start_[i + 1];
-#pragma omp simd
-    for (Index k = first; k < last; ++k) f(at<D>(k));
+    for (Index k = begin(i); k < end(i); ++k) f(at<D>(k));
   }
 
   template <int D>
@@ -127,6 +133,17 @@ class PairList {
     for (int c = 0; c < D; ++c) p.x[c] = dx_[c][k];
     p.w = w_[k];
     p.f = f_[k];
+    return p;
+  }
+
+  template <int D>
+  PairLanes<D> lanes(Index k) const {
+    PairLanes<D> p;
+    p.j = j_.data() + k;
+    p.k = k;
+    for (int c = 0; c < D; ++c) p.x[c] = load(dx_[c].data() + k);
+    p.w = load(w_.data() + k);
+    p.f = load(f_.data() + k);
     return p;
   }
 
@@ -153,11 +170,13 @@ class PairList {
   /// Finds the wanted rows of these cells, `block_cells` of them a task.
   void search(const Patch& patch, const CellGrid& grid, double skin, std::span<const Index> cells,
               Index block_cells);
+  void place_rows(Index begin, Index end);
   void copy_blocks(const Patch& patch);
 
   int dim_ = 3;
   std::array<double, 3> period_{};
-  std::vector<Index> start_{0}, j_;
+  std::vector<Index> start_{0}, count_, j_;
+  std::size_t pairs_ = 0;
   std::array<std::vector<float>, 3> dx_;
   std::vector<float> w_, f_;
   std::vector<std::uint8_t> next_to_melt_, next_to_wall_, wanted_;

@@ -7,11 +7,21 @@
 
 namespace meltray::sph {
 
-/// Adds one pair, V_j F_ij = `vf`, to the kernel moment matrix M = -sum V F x x^T.
+/// What neighbours with V_j F_ij = `vf` add to the kernel moment matrix M = -sum V F x x^T; written to the
+/// symmetric_count(D) places at `out`.
 template <int D>
-void add_moment(Eigen::Matrix<double, D, D>& moment, double vf, const Pair<D>& p) {
+void moments(const Lanes& vf, const PairLanes<D>& p, Lanes* out) {
   for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) moment(a, b) -= vf * p.x[a] * p.x[b];
+    for (int b = a; b < D; ++b) *out++ = -vf * p.x[a] * p.x[b];
+}
+
+/// The matrix of symmetric_count(D) numbers, its rows from the diagonal on.
+template <int D>
+Eigen::Matrix<double, D, D> symmetric(const double* numbers) {
+  Eigen::Matrix<double, D, D> matrix;
+  for (int a = 0; a < D; ++a)
+    for (int b = a; b < D; ++b) matrix(a, b) = matrix(b, a) = *numbers++;
+  return matrix;
 }
 
 /// Inverse of a kernel moment matrix M = -sum V F x x^T (identity deep inside): gradients multiplied by it

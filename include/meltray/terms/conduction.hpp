@@ -31,9 +31,10 @@ class ConductionOperator {
 
  private:
   void find_missing_layers(const Stage& stage);
+  double exchange(const sph::PairList& pairs, Index i, const double* temperature) const;
   double row_sum(const sph::PairList& pairs, Index i) const;
 
-  std::vector<double> k_;  ///< per pair; 0 where the pair does not exchange heat
+  std::vector<float> k_;  ///< per pair, rounded alike for (i, j) and (j, i); 0 where no heat is exchanged
   std::vector<double> conductivity_, missing_, wall_slope_, wall_power_;
   mutable std::vector<double> capacity_, dt_;
   mutable solve::CgVectors<1> vectors_;
@@ -42,7 +43,7 @@ class ConductionOperator {
 /// True where a particle has so many neighbours, none of them a dummy, that it lacks nothing: most do, and
 /// their Shepard sum need not be asked for. One of a flat face has little more than half of a full lattice's.
 inline bool surrounded(const sph::PairList& pairs, Index i, const sph::LatticeSums& lattice) {
-  return pairs.end(i) - pairs.begin(i) >= 0.9 * lattice.neighbours && !pairs.next_to_wall()[i];
+  return pairs.count(i) >= 0.9 * lattice.neighbours && !pairs.next_to_wall()[i];
 }
 
 /// What a particle lacks for conduction along the surface, over what one of a flat face lacks: 0 inside, 1 on

@@ -64,10 +64,8 @@ class ViscousOperator {
                         double tolerance, int max_iterations, solve::CgVectors<D>& vectors) const;
 
   ViscousChoice choice_;
-  /// Per pair, in single precision because the product is bound by memory: c_ij and e_ij = sqrt(-d_ij) x_ij,
-  /// so that d_ij (u.x_ij) x_ij = -(u.e_ij) e_ij. Rounded alike for (i, j) and (j, i).
-  std::vector<float> c_, e_[3];
-  std::vector<double> c_sum_, e2_sum_;  ///< sum_j -c_ij and sum_j e_ij^2 of each row
+  std::vector<float> c_, d_;           ///< per pair, rounded alike for (i, j) and (j, i)
+  std::vector<double> c_sum_, d_sum_;  ///< sum_j -c_ij and sum_j -d_ij r_ij^2 of each row
   std::vector<double> alpha_, mu_;
   mutable solve::CgVectors<2> vectors_2d_;
   mutable solve::CgVectors<3> vectors_3d_;

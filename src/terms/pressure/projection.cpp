@@ -22,11 +22,15 @@ void Projection::assemble(const Stage& s) {
   const auto& pairs = *s.pairs;
   const auto& wall_of_melt = pairs.next_to_melt();
   row_of_.assign(n, -1);
+  solved_volume_.assign(n, 0.0);
+  melt_volume_.assign(n, 0.0);
   particle_of_.clear();
   for (Index i = 0; i < n; ++i) {
     if (s.loose[i] || !(s.patch->liquid[i] || wall_of_melt[i])) continue;
     row_of_[i] = static_cast<Index>(particle_of_.size());
     particle_of_.push_back(i);
+    solved_volume_[i] = s.volume[i];
+    if (s.patch->liquid[i]) melt_volume_[i] = s.volume[i];
   }
   const Index rows = static_cast<Index>(particle_of_.size());
   matrix_.diagonal.resize(rows);
@@ -35,8 +39,9 @@ void Projection::assemble(const Stage& s) {
   matrix_.start[0] = 0;
   parallel_for(rows, [&](Index r) {
     const Index i = particle_of_[r];
+    const double* const partner = partner_volume(s, i);
     Index count = 0;
-    for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += mobility(s, i, pairs.neighbour(k)) > 0;
+    for (Index k = pairs.begin(i); k < pairs.end(i); ++k) count += partner[pairs.neighbour(k)] > 0;
     matrix_.start[r + 1] = count;
   });
   for (Index r = 0; r < rows; ++r) matrix_.start[r + 1] += matrix_.start[r];
@@ -47,17 +52,25 @@ void Projection::assemble(const Stage& s) {
   const double full = scale * lattice.laplacian;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
+    const double *const solved = solved_volume_.data(), *const melt = melt_volume_.data();
     parallel_for(rows, [&](Index r) {
       const Index i = particle_of_[r];
+      const double* const partner = partner_volume(s, i);
+      const double own = s.patch->liquid[i] ? 0.5 : 0.0;
       Index out = matrix_.start[r];
       double sum = 0;
-      pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
-        const double mobile = mobility(s, i, p.j);
-        if (mobile == 0) return;
-        const auto a = static_cast<float>(-scale * mobile * (s.volume[i] * s.volume[p.j]) * p.f);
-        matrix_.column[out] = row_of_[p.j];
-        matrix_.off[out++] = a;
-        sum += a;
+      pairs.for_lanes<D>(i, [&](const sph::PairLanes<D>& p) {
+        // Mean 1/m of the pair over that of the melt, times V_j.
+        const sph::Lanes mobile = own * p.of(solved) + 0.5 * p.of(melt);
+        std::array<float, sph::kLaneCount> a;
+        sph::store(a.data(), (mobile * s.volume[i]) * (-scale * p.f));
+        for (Index lane = 0; lane < sph::kLaneCount; ++lane) {
+          const Index j = p.j[lane];
+          if (partner[j] == 0 || j == i) continue;
+          matrix_.column[out] = row_of_[j];
+          matrix_.off[out++] = a[lane];
+          sum += a[lane];
+        }
       });
       // The exposed share counts even where the layer is pressed together and its own sum is full.
       const double missing = std::max(1 - s.diagonal[i], (1 - lattice.face_diagonal) * s.exposure[i]);
@@ -81,9 +94,10 @@ void Projection::assemble(const Stage& s) {
     }
 }
 
-/// Mean 1 / m of a pair over that of the melt: what stays where it is has an infinite mass.
-double Projection::mobility(const Stage& s, Index i, Index j) const {
-  return row_of_[j] < 0 ? 0.0 : 0.5 * (s.patch->liquid[i] + s.patch->liquid[j]);
+/// Of all patch particles, volumes of those that particle i has an entry with, 0 of the others: what stays
+/// where it is has an infinite mass and passes no pressure on.
+const double* Projection::partner_volume(const Stage& s, Index i) const {
+  return s.patch->liquid[i] ? solved_volume_.data() : melt_volume_.data();
 }
 
 /// What the tangential velocity of the melt around a fixed particle adds to its divergence, for a field u.
@@ -93,19 +107,24 @@ double Projection::mobility(const Stage& s, Index i, Index j) const {
 template <int D>
 double Projection::sliding(const Stage& s, Index i, const ConstField& u) const {
   using Vector = Eigen::Matrix<double, D, 1>;
-  Vector velocity = Vector::Zero(), open = Vector::Zero(), normal = Vector::Zero();
-  double weight = 0, at_surface = 0;
-  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-    const double volume = s.volume[p.j], share = volume * p.w;
-    const bool melt = s.patch->liquid[p.j];
-    Vector& side = melt ? open : normal;
-    for (int c = 0; c < D; ++c) side[c] += volume * p.f * p.x[c];
-    if (!melt) return;
-    for (int c = 0; c < D; ++c) velocity[c] += share * (u[c][p.j] - u[c][i]);
-    weight += share;
-    at_surface += share * s.surface[p.j];
+  // Sums over the melt: velocity, gradient of its share, the share itself and that of its surface; and the
+  // gradient of the share of what is fixed.
+  const auto sum = s.pairs->sum_row<D, 3 * D + 2>(i, [&](const sph::PairLanes<D>& p) {
+    const sph::Lanes volume = p.of(s.volume.data()), melt = p.of(s.patch->liquid.data()),
+                     share = volume * p.w * melt, slope = volume * p.f, slope_of_melt = slope * melt;
+    std::array<sph::Lanes, 3 * D + 2> out;
+    for (int c = 0; c < D; ++c) {
+      out[c] = share * (p.of(u[c]) - u[c][i]);
+      out[D + c] = slope_of_melt * p.x[c];
+      out[2 * D + c] = (slope - slope_of_melt) * p.x[c];
+    }
+    out[3 * D] = share;
+    out[3 * D + 1] = share * p.of(s.surface.data());
+    return out;
   });
+  const double weight = sum[3 * D], at_surface = sum[3 * D + 1];
   if (at_surface == 0) return 0;
+  Vector velocity(sum.data()), open(sum.data() + D), normal(sum.data() + 2 * D);
   // Dummies end where the box ends: their normal is that of their face.
   if (s.patch->wall[i]) normal = Vector::Unit(s.constants->faces[s.patch->wall[i] - 1].axis);
   velocity /= weight;
@@ -123,10 +142,10 @@ void Projection::divergence(const Stage& s, const ConstField& u, std::vector<dou
       const Index i = particle_of_[r];
       double ui[D];
       for (int c = 0; c < D; ++c) ui[c] = u[c][i];
-      const auto sum = s.pairs->sum_row<D, 1>(i, [&](const sph::Pair<D>& p) {
-        double dot = 0;
-        for (int c = 0; c < D; ++c) dot += (u[c][p.j] - ui[c]) * p.x[c];
-        return std::array<double, 1>{volume[p.j] * p.f * dot};
+      const auto sum = s.pairs->sum_row<D, 1>(i, [&](const sph::PairLanes<D>& p) {
+        sph::Lanes dot = 0;
+        for (int c = 0; c < D; ++c) dot += (p.of(u[c]) - ui[c]) * p.x[c];
+        return std::array<sph::Lanes, 1>{p.of(volume) * p.f * dot};
       });
       // Fixed particles stop what comes along their normal; what slides past them they let pass.
       out[r] = scale * (s.patch->liquid[i] ? sum[0] : sum[0] - sliding<D>(s, i, u));
@@ -141,16 +160,22 @@ void Projection::divergence_rate(const Stage& s, const ConstField& v, std::vecto
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     using Matrix = Eigen::Matrix<double, D, D>;
+    constexpr int kEntries = D * D;
     parallel_for(rows(), [&](Index r) {
       const Index i = particle_of_[r];
-      Matrix gradient = Matrix::Zero(), moment = Matrix::Zero();
-      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-        const double vf = s.volume[p.j] * p.f;
-        for (int a = 0; a < D; ++a)
-          for (int b = 0; b < D; ++b) gradient(a, b) += vf * (v[a][p.j] - v[a][i]) * p.x[b];
-        sph::add_moment<D>(moment, vf, p);
+      const auto sum = s.pairs->sum_row<D, kEntries + symmetric_count(D)>(i, [&](const sph::PairLanes<D>& p) {
+        const sph::Lanes vf = p.of(s.volume.data()) * p.f;
+        std::array<sph::Lanes, kEntries + symmetric_count(D)> out;
+        for (int a = 0; a < D; ++a) {
+          const sph::Lanes du = vf * (p.of(v[a]) - v[a][i]);
+          for (int b = 0; b < D; ++b) out[a * D + b] = du * p.x[b];
+        }
+        sph::moments<D>(vf, p, out.data() + kEntries);
+        return out;
       });
-      gradient = gradient * sph::renormalisation<D>(moment);
+      const Matrix moment = sph::symmetric<D>(sum.data() + kEntries),
+                   gradient = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>(sum.data()) *
+                              sph::renormalisation<D>(moment);
       out[r] = -(gradient * gradient).trace();
     });
   });
@@ -214,28 +239,29 @@ void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutF
   const double plain = 1 / s.constants->lattice.second_moment;
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
-    using Matrix = Eigen::Matrix<double, D, D>;
     using Vector = Eigen::Matrix<double, D, 1>;
     const double *const p = s.patch->pressure.data(), *const volume = s.volume.data();
-    const Index* const row_of = row_of_.data();
+    const double* const solved = solved_volume_.data();
     parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       if (row_of_[i] < 0) return;
       const double pi = p[i];
       // Partners outside the system (deeper solid, loose drops) have no pressure: zero normal derivative.
-      const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::Pair<D>& q) {
-        const double g = row_of[q.j] >= 0 ? volume[q.j] * q.f * (p[q.j] - pi) : 0.0;
-        std::array<double, D> out;
+      const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::PairLanes<D>& q) {
+        const sph::Lanes g = q.of(solved) * q.f * (q.of(p) - pi);
+        std::array<sph::Lanes, D> out;
         for (int c = 0; c < D; ++c) out[c] = g * q.x[c];
         return out;
       });
       Vector gradient;
       for (int c = 0; c < D; ++c) gradient[c] = sum[c];
       if (entry == SurfaceEntry::pressure && s.surface[i] > 0) {
-        Matrix moment = Matrix::Zero();
-        s.pairs->for_row<D>(i,
-                            [&](const sph::Pair<D>& q) { sph::add_moment<D>(moment, volume[q.j] * q.f, q); });
-        gradient = sph::renormalisation<D>(moment) * gradient;
+        const auto moment = s.pairs->sum_row<D, symmetric_count(D)>(i, [&](const sph::PairLanes<D>& q) {
+          std::array<sph::Lanes, symmetric_count(D)> out;
+          sph::moments<D>(q.of(volume) * q.f, q, out.data());
+          return out;
+        });
+        gradient = sph::renormalisation<D>(sph::symmetric<D>(moment.data())) * gradient;
       } else {
         gradient *= plain;
       }

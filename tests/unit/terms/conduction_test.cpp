@@ -45,7 +45,7 @@ TEST_CASE("conduction: a linear profile between walls at its end temperatures is
     // What a wall step of a kelvin over a spacing would give is the scale.
     const double flux = kLambda * 600 / max[0], scale = flux / (7000 * kDx);
     for (Index i = 0; i < s.patch.size(); ++i) worst = std::max(worst, std::abs(rate[i]) / scale);
-    CHECK(worst < 1e-9);
+    CHECK(worst < 5e-8);  // conductances of pairs are stored in single precision
     const double area = std::pow(max[1], dim - 1);
     CHECK(power == Approx(0).margin(1e-9 * flux * area));
 

@@ -51,10 +51,12 @@ class Projection {
  private:
   template <int D>
   double sliding(const Stage& stage, Index i, const ConstField& u) const;
-  double mobility(const Stage& stage, Index i, Index j) const;
+  const double* partner_volume(const Stage& stage, Index i) const;
 
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
+  std::vector<double> solved_volume_,
+      melt_volume_;  ///< per patch particle: 0 without a row; and of what is fixed
   std::vector<double> ghost_, anchor_, rhs_, x_;
   std::vector<Index> group_, scratch_;
   std::vector<double> group_sum_, group_share_;
