@@ -252,18 +252,21 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
   const auto period = period_;
   const auto refresh_row = [&](Index i) {
     const double hi = h[i];
-    const Index last = filled_end(i);
-    for (Index k = start_[i]; k < last; k += kLaneCount) {
-      Lanes r2 = 0;
+    double xi[D];
+    for (int c = 0; c < D; ++c) xi[c] = x[c][i];
+    const Index first = start_[i], last = filled_end(i);
+#pragma omp simd
+    for (Index k = first; k < last; ++k) {
+      double r2 = 0;
       for (int c = 0; c < D; ++c) {
-        Lanes s = x[c][i] - gather(x[c], j + k);
-        if constexpr (Periodic) s -= period[c] * nearbyint(s * inverse_period[c]);
-        store(dx[c] + k, s);
+        double s = xi[c] - x[c][j[k]];
+        if constexpr (Periodic) s -= period[c] * std::rint(s * inverse_period[c]);
+        dx[c][k] = static_cast<float>(s);
         r2 += s * s;
       }
-      const Lanes r = sqrt(r2), inv_h = 2 / (hi + gather(h, j + k));
-      store(w + k, Kernel::w(r, inv_h));
-      store(f + k, Kernel::f(r, inv_h));
+      const double r = std::sqrt(r2), inv_h = 2 / (hi + h[j[k]]);
+      w[k] = static_cast<float>(Kernel::w(r, inv_h));
+      f[k] = static_cast<float>(Kernel::f(r, inv_h));
     }
     for (Index k = end(i); k < last; ++k) w[k] = f[k] = 0;
   };

@@ -4,41 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <type_traits>
 
 namespace meltray::sph {
 
 enum class KernelType { wendland_c2, cubic_spline };
 
-/// The larger of 0 and x.
-template <class T>
-[[gnu::always_inline]] inline T positive(const T& x) {
-  using std::max;
-  return max(T(0), x);
-}
-
 /// Smoothing kernel W(r, h) of support 2h with its radial derivative divided by r, F = W'/r <= 0, so that
-/// grad_a W_ab = F (x_a - x_b); F is finite at r = 0 and needs no division. T is double, or a register of
-/// them (sph/lanes.hpp). Wendland C2: W = alpha (1 - q/2)^4 (2q + 1), q = r/h; alpha = 7/(4 pi h^2) in 2-D,
-/// 21/(16 pi h^3) in 3-D.
+/// grad_a W_ab = F (x_a - x_b); F is finite at r = 0 and needs no division.
+/// Wendland C2: W = alpha (1 - q/2)^4 (2q + 1), q = r/h; alpha = 7/(4 pi h^2) in 2-D, 21/(16 pi h^3) in 3-D.
 template <int D>
 struct WendlandC2 {
   static constexpr double kAlpha = D == 2 ? 7 / (4 * std::numbers::pi) : 21 / (16 * std::numbers::pi);
 
-  template <class T>
-  static T w(const std::type_identity_t<T>& r, const T& inv_h) {
-    const T q = r * inv_h, t = positive(T(1 - 0.5 * q)), t2 = t * t;
+  static double w(double r, double inv_h) {
+    const double q = r * inv_h, t = std::max(0.0, 1 - 0.5 * q), t2 = t * t;
     return scale(inv_h) * t2 * t2 * (2 * q + 1);
   }
-  template <class T>
-  static T f(const std::type_identity_t<T>& r, const T& inv_h) {
-    const T t = positive(T(1 - 0.5 * r * inv_h));
+  static double f(double r, double inv_h) {
+    const double t = std::max(0.0, 1 - 0.5 * r * inv_h);
     return -5 * scale(inv_h) * inv_h * inv_h * t * t * t;
   }
 
  private:
-  template <class T>
-  static T scale(const T& inv_h) {
+  static double scale(double inv_h) {
     return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h;
   }
 };
@@ -48,24 +36,19 @@ template <int D>
 struct CubicSpline {
   static constexpr double kAlpha = D == 2 ? 15 / (7 * std::numbers::pi) : 3 / (2 * std::numbers::pi);
 
-  template <class T>
-  static T w(const std::type_identity_t<T>& r, const T& inv_h) {
-    const T q = r * inv_h, a = positive(T(2 - q)), b = positive(T(1 - q));
+  static double w(double r, double inv_h) {
+    const double q = r * inv_h, a = std::max(0.0, 2 - q), b = std::max(0.0, 1 - q);
     return scale(inv_h) / 6 * (a * a * a - 4 * b * b * b);
   }
-  template <class T>
-  static T f(const std::type_identity_t<T>& r, const T& inv_h) {
-    // W'/r = alpha/h^2 * (-(2-q)^2/2 + 2 (1-q)^2)/q; for q < 1 the division cancels: -(2 - 3q/2). There it is
-    // the lower of the two, and beyond the upper.
-    using std::max, std::min;
-    const T q = r * inv_h, a = positive(T(2 - q));
-    const T outer = -0.5 * a * a / max(q, T(1));
-    return scale(inv_h) * inv_h * inv_h * min(T(1.5 * q - 2), outer);
+  static double f(double r, double inv_h) {
+    // W'/r = alpha/h^2 * (-(2-q)^2/2 + 2 (1-q)^2)/q; for q < 1 the division cancels: -(2 - 3q/2).
+    const double q = r * inv_h, a = std::max(0.0, 2 - q);
+    const double outer = -0.5 * a * a / std::max(q, 1.0);
+    return scale(inv_h) * inv_h * inv_h * (q < 1 ? -(2 - 1.5 * q) : outer);
   }
 
  private:
-  template <class T>
-  static T scale(const T& inv_h) {
+  static double scale(double inv_h) {
     return D == 2 ? kAlpha * inv_h * inv_h : kAlpha * inv_h * inv_h * inv_h;
   }
 };
