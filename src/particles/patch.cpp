@@ -13,6 +13,9 @@ namespace meltray {
 
 namespace {
 
+/// What has been done around a cell in this selection (core_).
+constexpr std::uint8_t kReached = 1, kSurrounded = 2;
+
 bool moves(const Particles& p, Index i) {
   return p.is_liquid(i) && !p.has(i, kRemoved);
 }
@@ -69,10 +72,17 @@ void PatchSelector::mark(Index cell) {
   marked_[cell] = 1;
 }
 
+/// Marks a cell and those next to it.
+void PatchSelector::mark_block(Index cell) {
+  if (core_[cell] & kSurrounded) return;
+  core_[cell] |= kSurrounded;
+  grid_.for_block(cell, 1, [&](Index k) { mark(k); });
+}
+
 /// Marks the cells that may hold something within `reach` cell widths of the moving particles of a cell.
 void PatchSelector::mark_near(const Particles& particles, Index cell, Index reach) {
-  if (core_[cell]) return;
-  core_[cell] = 1;
+  if (core_[cell] & kReached) return;
+  core_[cell] |= kReached;
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   for (int c = 0; c < particles.dim; ++c) {
     const auto [least, most] = std::minmax_element(
@@ -93,7 +103,7 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
   sort_moving(particles);
   for (const Index cell : moving_cell_) mark_near(particles, cell, reach);
   const auto x = view(particles.x);
-  for (Index i : also) grid_.for_block(grid_.cell(x, i), 1, [&](Index k) { mark(k); });
+  for (Index i : also) mark_block(grid_.cell(x, i));
   std::sort(marked_cells_.begin(), marked_cells_.end());
   fill(particles, patch);
 }
@@ -101,12 +111,7 @@ void PatchSelector::select_near_melt(const Particles& particles, std::span<const
 void PatchSelector::select_around(const Particles& particles, std::span<const Index> centres, Patch& patch) {
   unmark();
   const auto x = view(particles.x);
-  for (Index i : centres) {
-    const Index cell = grid_.cell(x, i);
-    if (core_[cell]) continue;
-    core_[cell] = 1;
-    grid_.for_block(cell, 1, [&](Index k) { mark(k); });
-  }
+  for (Index i : centres) mark_block(grid_.cell(x, i));
   std::sort(marked_cells_.begin(), marked_cells_.end());
   sort_moving(particles);
   fill(particles, patch);

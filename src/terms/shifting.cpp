@@ -26,7 +26,8 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
         if (inside == 0 || s.loose[i]) return;
         const auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
           const sph::Lanes ratio = p.w * inverse_w, r2 = ratio * ratio;
-          const sph::Lanes g = p.of(volume) * p.f * (1 + 0.2 * r2 * r2);
+          const sph::Lanes push = 0.2 * max(r2 * r2 - 1, sph::Lanes(0));
+          const sph::Lanes g = p.of(volume) * p.f * (1 + push);
           std::array<sph::Lanes, D> out;
           for (int c = 0; c < D; ++c) out[c] = g * p.x[c];
           return out;

@@ -85,6 +85,7 @@ class PatchSelector {
  private:
   void unmark();
   void mark(Index cell);
+  void mark_block(Index cell);
   void mark_near(const Particles& particles, Index cell, Index reach);
   void fill(const Particles& particles, Patch& patch);
   void sort_moving(const Particles& particles);

@@ -72,9 +72,14 @@ void Projection::assemble(const Stage& s) {
           sum += a[lane];
         }
       });
-      // The exposed share counts even where the layer is pressed together and its own sum is full.
-      const double missing = std::max(1 - s.diagonal[i], (1 - lattice.face_diagonal) * s.exposure[i]);
-      ghost_[r] = s.patch->liquid[i] ? s.surface[i] * full * s.volume[i] * missing : 0.0;
+      // A pressure that is linear from the surface inwards, half a spacing away, solves the row of a flat
+      // face, pressed together or not. In drops, edges and films, where the gradient of the colour vanishes
+      // by symmetry, what the sum lacks is the larger.
+      double open = 0;
+      for (int c = 0; c < D; ++c) open += s.grad_c[c][i] * s.grad_c[c][i];
+      const double ghost =
+          std::max(full * (1 - s.diagonal[i]), scale * std::sqrt(open) / (0.5 * s.constants->spacing));
+      ghost_[r] = s.patch->liquid[i] ? s.surface[i] * s.volume[i] * ghost : 0.0;
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });

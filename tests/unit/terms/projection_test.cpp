@@ -134,8 +134,9 @@ TEST_CASE("projection: hydrostatic pressure in a wide basin is rho g depth") {
     s.dummies(4, Vec3::Zero(), max, 300);
     s.prepare(Vec3(0, -3 * kDx, 0), max + Vec3(0, 4 * kDx, 0), {true, false, false});
     Components a;
-    // The ghost condition puts p = 0 up to a spacing above the face (0.7 measured): 1/40 at the most.
-    CHECK(hydrostatic_error(s, entry, max[1], a) < 0.02);
+    // The ghost condition puts p = 0 a tenth of a spacing off the face: the second layer, too, lacks
+    // neighbours beyond it.
+    CHECK(hydrostatic_error(s, entry, max[1], a) < 0.15 / 40);
     int wrong = 0;
     for (Index i : s.stage.moving)
       if (s.patch.x[1][i] > 3 * kDx && s.patch.x[1][i] < 36 * kDx)
@@ -149,8 +150,8 @@ TEST_CASE("projection: hydrostatic pressure in a narrow tank is rho g depth") {
     StageSetup s(2, kDx);
     tank(s, 30, 24);
     Components a;
-    // As in the basin 0.7 spacings of 24 at the top, and a little more in the corners there.
-    CHECK(hydrostatic_error(s, entry, 24 * kDx, a) < 0.035);
+    // As in the basin, and more in the corners.
+    CHECK(hydrostatic_error(s, entry, 24 * kDx, a) < 0.01);
   }
 }
 

@@ -142,3 +142,26 @@ TEST_CASE("shifting: surface particles stay, the rest follow C, saturated at a f
   CHECK(inner > 100);
   CHECK(worst < 1e-9);
 }
+
+TEST_CASE("shifting: pushes pairs apart that are closer than a spacing, and only those") {
+  using Kernel = sph::WendlandC2<3>;
+  for (const double spacings : {0.6, 0.9, 1.0, 1.4}) {
+    CAPTURE(spacings);
+    StageSetup s(3, kDx);
+    const double distance = spacings * kDx, inverse_h = 1 / s.constants.smoothing;
+    s.add(Vec3::Zero(), 2000, true);
+    s.add(Vec3(distance, 0, 0), 2000, true);
+    s.prepare(Vec3::Constant(-4 * kDx), Vec3::Constant(5 * kDx));
+    s.set_velocity([](const Vec3&) { return Vec3(0, 1, 0); });
+    // As if the two were inside the melt: a surface is not shifted.
+    s.stage.surface.assign(2, 0.0);
+    s.stage.loose.assign(2, 0);
+    const double weak = 1e-6, slope = distance * Kernel::f(distance, inverse_h);
+    const double ratio = Kernel::w(distance, inverse_h) / Kernel::w(kDx, inverse_h);
+    const double push = 0.2 * std::max(std::pow(ratio, 4) - 1, 0.0);
+    const double expected = weak * s.constants.smoothing * s.cell_volume() * slope * (1 + push);
+    const auto f = shift(s, weak);
+    CHECK(f.transport[0][0] == Approx(expected).epsilon(1e-4));
+    CHECK(f.transport[0][1] == Approx(-expected).epsilon(1e-4));
+  }
+}

@@ -23,10 +23,12 @@ struct ProjectionOptions {
 ///   sum_j a_ij (p_i - p_j) + g_i (p_i - q_i) = -V_i S_i,  a_ij = -(1/m_i + 1/m_j) V_i V_j F_ij,
 /// where S is what the divergence of grad p / rho has to be. At a free surface the missing part of the kernel
 /// is filled by particles of pressure q ("ghost" diagonal, Nair & Tomar 2014): g_i = surface_i * (full sum of
-/// a - actual sum). Solid particles are rows with zero velocity (no flow through them) and infinite mass,
-/// with m = rho in the melt: they do not pass pressure on to each other, and a linear pressure is exact on a
-/// lattice up to walls and corners. Deeper solid is left out (zero normal derivative). With q uniform, p = q
-/// is an exact rest state of both surface entries.
+/// a - actual sum), or as much more as puts q on the face of a flat surface, half a spacing above its
+/// outermost layer, where the surface force has it: |sum_j a_ij x_ij| over that half spacing. Solid particles
+/// are rows with zero velocity (no flow through them) and infinite mass, with m = rho in the melt: they do
+/// not pass pressure on to each other, and a linear pressure is exact on a lattice up to walls and corners.
+/// Deeper solid is left out (zero normal derivative). With q uniform, p = q is an exact rest state of both
+/// surface entries.
 class Projection {
  public:
   /// Rows, matrix and ghost diagonal at the stage's geometry and surface.
@@ -55,8 +57,8 @@ class Projection {
 
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
-  std::vector<double> solved_volume_,
-      melt_volume_;  ///< per patch particle: 0 without a row; and of what is fixed
+  std::vector<double> solved_volume_;  ///< per patch particle: 0 without a row
+  std::vector<double> melt_volume_;    ///< per patch particle: 0 without a row and of what is fixed
   std::vector<double> ghost_, anchor_, rhs_, x_;
   std::vector<Index> group_, scratch_;
   std::vector<double> group_sum_, group_share_;
