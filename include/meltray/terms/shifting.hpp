@@ -7,8 +7,8 @@ namespace meltray::terms {
 
 /// Particle shifting as a transport velocity, dx/dt = v + du, after Lind et al. 2012 in the form of Skillen
 /// et al. 2013: du_i = -C h |v_i| sum_j V_j (1 + 0.2 max((W_ij/W(dx))^4 - 1, 0)) grad W_ij. The push in the
-/// bracket is theirs for pairs closer than a spacing, which it keeps from clumping; at a spacing it is zero,
-/// for there it would shear a lattice along its columns. The velocity carried along gets the convective
+/// bracket, theirs less its value at a spacing, keeps pairs from clumping; it is zero from a spacing on, for
+/// there it would shear a lattice along its columns. The velocity carried along gets the convective
 /// correction du.grad v; enthalpy stays with its particle, so that energy is conserved exactly. |du|
 /// saturates at a fifth of the speed: next to a void or in a crushed pair the sum alone would outrun the
 /// flow. Surface particles are not shifted: their colour gradient points into the material.

@@ -73,9 +73,26 @@ Impact run(const Setting& setting, const scene::Overrides& overrides, double spa
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The same impact at several spacings.
+struct Repeats {
+  std::vector<double> peaks, times;
+  double seconds = 0;
+};
+
+Repeats repeat(const Setting& setting, const scene::Overrides& overrides, const std::vector<int>& counts) {
+  Repeats repeats;
+  for (const int count : counts) {
+    const Impact impact = run(setting, overrides, 1.0 / count);
+    repeats.peaks.push_back(impact.peak);
+    repeats.times.push_back(impact.time);
+    repeats.seconds += impact.seconds;
+  }
+  return repeats;
 }
 
 std::string across_text(const std::vector<int>& counts) {
@@ -90,34 +107,27 @@ Rows dam_break_lobovsky(const Setting& setting) {
   const double peak = reference.number(0, "value"), time = reference.number(1, "value");
   // The reference is the median of repeats, and so is what is judged: from one spacing to the next the peak
   // changes by a third, as from one repeat of the experiment to the next.
-  const std::vector<std::vector<int>> repeats =
+  const std::vector<std::vector<int>> spacings =
       setting.small ? std::vector<std::vector<int>>{{20}}
                     : std::vector<std::vector<int>>{{30}, {56, 58, 60, 62, 64}};
   Rows rows;
   for (const Model& m : collapse_models())
-    for (const std::vector<int>& counts : repeats) {
-      std::vector<double> peaks, times;
-      double seconds = 0;
-      for (const int count : counts) {
-        const Impact impact = run(setting, m.overrides, 1.0 / count);
-        peaks.push_back(impact.peak);
-        times.push_back(impact.time);
-        seconds += impact.seconds;
-      }
-      const bool finest = &counts == &repeats.back();
-      const Measured how{across_text(counts), seconds, reference.source()};
-      rows.push_back(relative_row(m.name + ": peak at sensor 1 / rho g H", median(peaks), peak, 0.3, how));
+    for (const std::vector<int>& counts : spacings) {
+      const Repeats repeats = repeat(setting, m.overrides, counts);
+      const Measured how{across_text(counts), repeats.seconds, reference.source()};
+      const auto add = [&](const char* quantity, double value, double expected, double tolerance,
+                           bool judged) {
+        rows.push_back(relative_row(m.name + ": " + quantity, value, expected, tolerance, how));
+        rows.back().judged = judged;
+      };
+      const bool finest = &counts == &spacings.back();
+      add("peak at sensor 1 / rho g H", median(repeats.peaks), peak, 0.3, finest && !setting.small);
       rows.back().goal = 0.15;
-      rows.back().judged = finest && !setting.small;
-      rows.push_back(
-          relative_row(m.name + ": time of the impact / sqrt(H / g)", median(times), time, 0.05, how));
-      rows.back().judged = finest;
+      add("time of the impact / sqrt(H / g)", median(repeats.times), time, 0.05, finest);
       if (counts.size() == 1) continue;
-      const auto [lowest, highest] = std::minmax_element(peaks.begin(), peaks.end());
-      rows.push_back(relative_row(m.name + ": lowest peak of the repeats", *lowest, peak, 0, how));
-      rows.back().judged = false;
-      rows.push_back(relative_row(m.name + ": highest peak of the repeats", *highest, peak, 0, how));
-      rows.back().judged = false;
+      const auto [lowest, highest] = std::minmax_element(repeats.peaks.begin(), repeats.peaks.end());
+      add("lowest peak of the repeats", *lowest, peak, 0, false);
+      add("highest peak of the repeats", *highest, peak, 0, false);
     }
   return rows;
 }

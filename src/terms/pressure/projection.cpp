@@ -10,7 +10,7 @@ namespace meltray::terms {
 
 namespace {
 
-/// Share of a flat face's ghost weight that ties a component to the free surface.
+/// Share of what the sum of a flat face's row lacks that ties a component to the free surface.
 constexpr double kAnchor = 0.3;
 /// Density excess of a surface particle that disorder explains and that is not corrected.
 constexpr double kTolerated = 0.03;
@@ -83,7 +83,8 @@ void Projection::assemble(const Stage& s) {
       matrix_.diagonal[r] = sum + ghost_[r];
     });
   });
-  // A component hangs on the free surface only if some row has a fair share of a flat face's ghost weight;
+  // A component hangs on the free surface only if some row's ghost weight is a fair share of what a flat
+  // face lacks;
   // the mean of the source would else leave through one weak row. Without that, the component is a closed
   // pocket.
   anchor_.resize(rows);
