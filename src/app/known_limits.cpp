@@ -10,11 +10,11 @@
 namespace meltray::app {
 namespace {
 
-using scene::Scene;
+using scene::Body, scene::Domain, scene::FaceKind, scene::Scene, scene::ShapeKind;
 
 // From the maps of stability: steps longer by this factor still left a weld's budgets and a pool or a drop in
-// order.
-constexpr double kWeldSteps = 4, kPoolSteps = 8;
+// order, and water that collapses inside its walls.
+constexpr double kWeldSteps = 4, kPoolSteps = 8, kCollapseSteps = 2;
 // Strength of the interface viscosity up to which the projection in every stage allowed the steps of the
 // flow.
 constexpr double kStageViscosity = 50;
@@ -22,7 +22,7 @@ constexpr double kStageViscosity = 50;
 void step_factors(const Scene& s, std::vector<std::string>& found) {
   if (s.time.integrator.fixed_step > 0) return;
   const scene::Time usual;
-  const double allowed = s.laser ? kWeldSteps : kPoolSteps;
+  const double allowed = s.laser ? kWeldSteps : s.terms.surface_tension ? kPoolSteps : kCollapseSteps;
   const std::array<std::pair<const char*, double>, 4> factors = {
       {{"cfl_advective", s.time.cfl_advective / usual.cfl_advective},
        {"cfl_capillary", s.time.cfl_capillary / usual.cfl_capillary},
@@ -33,6 +33,22 @@ void step_factors(const Scene& s, std::vector<std::string>& found) {
       found.push_back(
           fmt::format("time.{}: {:.3g} times the usual; single fast particles from more than {:g} times on",
                       name, factor, allowed));
+}
+
+/// A box of walls that one body fills: there is no gas in it.
+bool full_box(const Domain& domain) {
+  const auto closed = [&](int f) {
+    return (domain.dimension == 2 && f / 2 == 1) || domain.faces[f].kind != FaceKind::free;
+  };
+  for (int f = 0; f < 6; ++f)
+    if (!closed(f)) return false;
+  const auto fills = [&](const Body& body) {
+    bool all = body.shape == ShapeKind::box;
+    for (int c = 0; c < domain.dimension; ++c)
+      all = all && body.min[c] <= domain.min[c] && body.max[c] >= domain.max[c];
+    return all;
+  };
+  return std::any_of(domain.bodies.begin(), domain.bodies.end(), fills);
 }
 
 }  // namespace
@@ -47,6 +63,11 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
         fmt::format("flow.interface_viscosity_*: {:g} with the projection in every stage; beyond {:g} its "
                     "stiffness limits the step and may break the run down: splitting.projection = \"step\"",
                     strength, kStageViscosity));
+  if (s.terms.pressure && s.flow.solver == scene::FlowSolver::isph && s.flow.free_surface &&
+      full_box(s.domain))
+    found.push_back(
+        "flow.free_surface: true in a box of walls that is full; from 100 g on loose spots are taken for surface "
+        "and particles driven into the walls: false");
   return found;
 }
 

@@ -60,7 +60,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
   recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient,
              scene.surface.recoil_pressure, scene.surface.recoil_ramp};
-  buoyancy_ = {scene.terms.gravity, scene.terms.buoyancy, scene.domain.gravity};
+  buoyancy_ = {scene.weighs(), scene.terms.buoyancy, scene.domain.gravity};
   shifting_ = {flow.shifting, flow.shifting_speed};
   projection_options_ = {
       scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf : terms::SurfaceEntry::pressure,
@@ -403,7 +403,7 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
   }
   if (implicit_part) return;
   const auto timer = timers_.measure(Part::forces);
-  if (scene_.terms.gravity || scene_.terms.buoyancy) {
+  if (scene_.weighs() || scene_.terms.buoyancy) {
     buoyancy_.add_acceleration(stage, rates.acceleration);
     crossings.gravity = force_gained();
   }

@@ -269,7 +269,7 @@ std::vector<TermInfo> Simulation::terms() const {
           info("recoil", s.terms.recoil, projected),
           info("evaporation", s.terms.evaporation, side(p.losses, s.time.evaporation)),
           info("radiation", s.terms.radiation, side(p.losses, s.time.evaporation)),
-          info("gravity", s.terms.gravity, "explicit"),
+          info("gravity", s.terms.gravity, s.weighs() ? "explicit" : "held by the walls"),
           info("buoyancy", s.terms.buoyancy, "explicit"),
           info("shifting", s.flow.shifting > 0, "explicit"),
           info("laser", s.laser.has_value(), "explicit, frozen over a step"),

@@ -48,6 +48,8 @@ const std::vector<StudyScene>& study_scenes() {
     all.push_back({"static_pool", "a pool at rest under recoil", no_quantities, 0, 0, {}, {}, {}});
     all.push_back(
         {"natural_convection", "a closed square heated on one side", no_quantities, 0, 0, {}, {}, {}});
+    all.push_back({"dam_break", "a column of water collapses", no_quantities, 0, 0, {}, {}, {}});
+    all.push_back({"dam_break_wcsph", "the same with WCSPH", no_quantities, 0, 0, {}, {}, {}});
     return all;
   }();
   return scenes;

@@ -84,6 +84,7 @@ Cell compute(const scene::Scene& scene, Measure measure, std::int64_t largest_st
   cell.pressure_iterations = c.pressure_iterations;
   cell.pressure_at_limit = c.pressure_at_limit;
   cell.clamped = c.clamped + c.removed;
+  cell.liquid_particle_steps = c.liquid_particle_steps;
   cell.energy_error = simulation.energy().relative_error();
   cell.momentum_error = momentum_error(simulation.momentum(), simulation.particles(), cell.top_speed);
   return cell;
@@ -120,6 +121,7 @@ void counts(C& c, Field&& field) {
   field("pressure_iterations", c.pressure_iterations);
   field("pressure_at_limit", c.pressure_at_limit);
   field("clamped", c.clamped);
+  field("liquid_particle_steps", c.liquid_particle_steps);
 }
 
 std::string write(const Cell& cell, const std::string& what) {

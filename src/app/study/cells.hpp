@@ -20,7 +20,8 @@ struct Cell {
   std::int64_t evaluations = 0;  ///< of right-hand sides, explicit and implicit
   std::int64_t iterations = 0;   ///< of implicit solves: each applies the operator of its terms once
   std::int64_t pressure_solves = 0, pressure_iterations = 0, pressure_at_limit = 0;
-  std::int64_t clamped = 0;
+  std::int64_t clamped = 0;  ///< or removed
+  std::int64_t liquid_particle_steps = 0;
   double seconds = 0, cpu_seconds = 0;  ///< of the run that computed the cell
 
   double energy_error = 0, momentum_error = 0;  ///< of the budgets, relative

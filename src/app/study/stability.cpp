@@ -16,9 +16,10 @@ namespace {
 /// Bounds of a cell that counts as stable.
 constexpr double kEnergyBound = 1e-6, kMomentumBound = 1e-6;
 constexpr double kAtLimitBound = 0.01;  ///< share of pressure solves that end at their limit of iterations
+constexpr double kClampedBound = 1e-3;  ///< share of the steps of all liquid particles
 constexpr double kSpeedBound = 3;       ///< times the largest speed of the case as it is, times the factor
 constexpr double kUndershoot = 5;       ///< below the lowest temperature of the case as it is [K]
-constexpr std::int64_t kMostSteps = 20000;
+constexpr std::int64_t kMostSteps = 50000;
 
 /// A number of the scene that the map varies.
 struct Parameter {
@@ -104,7 +105,7 @@ const Parameter& find(const std::string& name, const scene::Scene& scene) {
 void scale_steps(scene::Time& time, double factor) {
   for (double* share :
        {&time.cfl_advective, &time.cfl_capillary, &time.cfl_force, &time.cfl_viscous, &time.cfl_thermal,
-        &time.beam_travel, &time.laser_heating, &time.integrator.fixed_step})
+        &time.cfl_acoustic, &time.beam_travel, &time.laser_heating, &time.integrator.fixed_step})
     *share *= factor;
   if (time.integrator.max_step < 1e300) time.integrator.max_step *= factor;
 }
@@ -123,7 +124,11 @@ Verdict judge(const Cell& cell, const Cell& usual, double factor) {
   if (static_cast<double>(cell.pressure_at_limit) > kAtLimitBound * static_cast<double>(cell.pressure_solves))
     return {"degraded", fmt::format("{} of {} pressure solves at their limit", cell.pressure_at_limit,
                                     cell.pressure_solves)};
-  if (cell.clamped > 0) return {"degraded", fmt::format("{} particles clamped or removed", cell.clamped)};
+  const double clamped = static_cast<double>(cell.clamped) /
+                         static_cast<double>(std::max<std::int64_t>(1, cell.liquid_particle_steps));
+  if (clamped > kClampedBound)
+    return {"degraded", fmt::format("{} particles clamped or removed, {:.2g} % of all steps of particles",
+                                    cell.clamped, 100 * clamped)};
   if (usual.finished && cell.top_speed > kSpeedBound * std::max(1.0, factor) * usual.top_speed)
     return {"degraded", fmt::format("speed {:.3g} m/s", cell.top_speed)};
   if (usual.finished && cell.lowest_temperature < usual.lowest_temperature - kUndershoot)

@@ -14,8 +14,13 @@ TEST_CASE("the usual settings are within the known limits") {
   CHECK(beyond_known_limits(s).empty());
 }
 
-TEST_CASE("long steps are named, earlier for a weld than for a pool") {
+TEST_CASE("long steps are named, earlier for a weld than for a pool, and earliest without tension") {
   scene::Scene s;
+  s.time.cfl_advective *= 3;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("time.cfl_advective: 3 times"));
+  s.terms.surface_tension = true;
+  CHECK(beyond_known_limits(s).empty());
   s.time.cfl_capillary *= 6;
   CHECK(beyond_known_limits(s).empty());
   s.laser.emplace();
@@ -46,5 +51,26 @@ TEST_CASE("stiff interfaces under the projection in every stage are named") {
   REQUIRE(beyond_known_limits(s).size() == 1);
   CHECK(beyond_known_limits(s)[0].starts_with("flow.interface_viscosity_*: 500"));
   s.terms.interface_viscosity = false;
+  CHECK(beyond_known_limits(s).empty());
+}
+
+TEST_CASE("a full box of walls that looks for a free surface is named") {
+  scene::Scene s;
+  s.terms.pressure = true;
+  s.domain.dimension = 2;
+  s.domain.max = Vec3(1, 1, 0);
+  for (const std::size_t f : {0, 1, 4, 5}) s.domain.faces[f].kind = scene::FaceKind::wall;
+  s.domain.bodies.push_back({.min = Vec3::Zero(), .max = Vec3(1, 1, 0)});
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.free_surface"));
+  SECTION("not where it does not") {
+    s.flow.free_surface = false;
+  }
+  SECTION("not where the body leaves room") {
+    s.domain.bodies[0].max[1] = 0.9;
+  }
+  SECTION("not where the box is open") {
+    s.domain.faces[5].kind = scene::FaceKind::free;
+  }
   CHECK(beyond_known_limits(s).empty());
 }
