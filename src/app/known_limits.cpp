@@ -36,7 +36,7 @@ void step_factors(const Scene& s, std::vector<std::string>& found) {
 }
 
 /// A box of walls that one body fills: there is no gas in it.
-bool full_box(const Domain& domain) {
+bool closed_and_full(const Domain& domain) {
   const auto closed = [&](int f) {
     return (domain.dimension == 2 && f / 2 == 1) || domain.faces[f].kind != FaceKind::free;
   };
@@ -51,6 +51,20 @@ bool full_box(const Domain& domain) {
   return std::any_of(domain.bodies.begin(), domain.bodies.end(), fills);
 }
 
+void full_boxes(const Scene& s, std::vector<std::string>& found) {
+  if (!s.terms.pressure || s.flow.solver != scene::FlowSolver::isph) return;
+  if (s.flow.free_surface && closed_and_full(s.domain))
+    found.push_back(
+        "flow.free_surface: true in a box of walls that is full; from 100 g on loose spots are taken for "
+        "surface and particles driven into the walls: false");
+  if (!s.flow.free_surface && s.flow.shifting == 0)
+    found.push_back("flow.shifting: 0 in a full box; its particles lose their order and run away: 4");
+  else if (!s.flow.free_surface && s.flow.shifting_speed == 0)
+    found.push_back(
+        "flow.shifting_speed_m_s: 0 in a full box; brisk convection ran away where it comes to rest: the "
+        "speed of the flow");
+}
+
 }  // namespace
 
 std::vector<std::string> beyond_known_limits(const Scene& s) {
@@ -63,11 +77,7 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
         fmt::format("flow.interface_viscosity_*: {:g} with the projection in every stage; beyond {:g} its "
                     "stiffness limits the step and may break the run down: splitting.projection = \"step\"",
                     strength, kStageViscosity));
-  if (s.terms.pressure && s.flow.solver == scene::FlowSolver::isph && s.flow.free_surface &&
-      full_box(s.domain))
-    found.push_back(
-        "flow.free_surface: true in a box of walls that is full; from 100 g on loose spots are taken for surface "
-        "and particles driven into the walls: false");
+  full_boxes(s, found);
   return found;
 }
 

@@ -14,6 +14,8 @@
 namespace meltray::app {
 
 std::string command_of(const ListedRun& r) {
+  if (observe::is_run_folder(r.folder))
+    return fmt::format("meltray resume {} --until {}", r.folder.string(), r.until);
   std::string text =
       fmt::format("meltray run {} --out {} --until {}", r.case_file.string(), r.folder.string(), r.until);
   for (const auto& s : r.set) text += " --set " + s;

@@ -16,7 +16,7 @@ struct ListedRun {
   double until = 0;  ///< [s]
 };
 
-/// The command line that does the run.
+/// The command line that does the run, or goes on with it where its folder is there.
 std::string command_of(const ListedRun& run);
 
 /// summary.json of a run folder, or null where there is none.

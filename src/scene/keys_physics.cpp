@@ -55,9 +55,10 @@ std::vector<Key> flow_keys() {
               "Largest number of iterations of a pressure solve.")
           .only_if(pressure)
           .only_if(isph),
-      boolean("flow.free_surface", MELTRAY_AT(flow.free_surface),
-              "false: the fluid fills a closed or periodic box; a loose spot in it is not taken for a surface, "
-              "and its pressure is without the hydrostatic one.")
+      boolean(
+          "flow.free_surface", MELTRAY_AT(flow.free_surface),
+          "false: the fluid fills a closed or periodic box; a loose spot in it is not taken for a surface, "
+          "and its pressure is without the hydrostatic one.")
           .only_if(pressure)
           .only_if(isph),
       number("flow.drift_time_s", "s", at_least(0), MELTRAY_AT(flow.drift_time),

@@ -38,6 +38,8 @@ class Paper(Scratch):
             self.assertTrue((folder / name).is_file())
         summary = (folder / "iron-500hz-isph-seed0" / "summary.json").stat().st_mtime_ns
         self.assertEqual(self.paper(*part, "--list"), "")
+        self.assertEqual(self.paper(*part[:-1], "2e-5", "--list").split(),
+                         ["meltray", "resume", str(folder / "iron-500hz-isph-seed0"), "--until", "2e-05"])
         self.paper(*part)
         self.assertEqual((folder / "iron-500hz-isph-seed0" / "summary.json").stat().st_mtime_ns, summary)
 

@@ -65,6 +65,8 @@ TEST_CASE("a full box of walls that looks for a free surface is named") {
   CHECK(beyond_known_limits(s)[0].starts_with("flow.free_surface"));
   SECTION("not where it does not") {
     s.flow.free_surface = false;
+    s.flow.shifting = 4;
+    s.flow.shifting_speed = 0.1;
   }
   SECTION("not where the body leaves room") {
     s.domain.bodies[0].max[1] = 0.9;
@@ -72,5 +74,18 @@ TEST_CASE("a full box of walls that looks for a free surface is named") {
   SECTION("not where the box is open") {
     s.domain.faces[5].kind = scene::FaceKind::free;
   }
+  CHECK(beyond_known_limits(s).empty());
+}
+
+TEST_CASE("a full box whose particles are not shifted, or not where they rest, is named") {
+  scene::Scene s;
+  s.terms.pressure = true;
+  s.flow.free_surface = false;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.shifting:"));
+  s.flow.shifting = 4;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.shifting_speed_m_s:"));
+  s.flow.shifting_speed = 0.1;
   CHECK(beyond_known_limits(s).empty());
 }
