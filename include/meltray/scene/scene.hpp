@@ -179,10 +179,12 @@ struct Scene {
   bool exchanges_heat() const {
     return terms.conduction || terms.evaporation || terms.radiation || laser.has_value();
   }
-  /// Gravity acts as a force. Melt that fills its box cannot fall: its pressure is reckoned without the
-  /// hydrostatic one, whose gradient over disordered particles would differ from the weight by far more than
-  /// buoyancy is.
-  bool weighs() const { return terms.gravity && flow.free_surface; }
+  /// Gravity acts as a force. Melt that fills its box between floor and lid cannot fall: its pressure is
+  /// reckoned without the hydrostatic one, whose gradient over disordered particles would differ from the
+  /// weight by more than buoyancy is.
+  bool weighs() const {
+    return terms.gravity && (flow.free_surface || domain.faces[4].kind == FaceKind::periodic);
+  }
 };
 
 }  // namespace meltray::scene

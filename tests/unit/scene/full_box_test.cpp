@@ -9,14 +9,14 @@
 namespace meltray::scene {
 namespace {
 
-std::string full_box(bool free_surface, double gravity) {
+std::string full_box(const std::string& floor_and_lid, bool free_surface, double gravity) {
   return fmt::format(R"(
 [domain]
 dimension = 2
 min_m = [0.0, 0.0]
 max_m = [1e-3, 1e-3]
 spacing_m = 1e-4
-gravity_m_s2 = {}
+gravity_m_s2 = {0}
 arrangement = "jittered"
 jitter = 0.1
 [faces.x_min]
@@ -24,9 +24,9 @@ kind = "wall"
 [faces.x_max]
 kind = "wall"
 [faces.z_min]
-kind = "wall"
+kind = "{1}"
 [faces.z_max]
-kind = "wall"
+kind = "{1}"
 [[bodies]]
 shape = "box"
 min_m = [0.0, 0.0]
@@ -38,26 +38,27 @@ name = "iron"
 pressure = true
 gravity = true
 [flow]
-free_surface = {}
+free_surface = {2}
 drift_time_s = 1e-5
 [time]
 end_s = 1e-4
 [output]
 interval_s = 1e-4
 )",
-                     gravity, free_surface);
+                     gravity, floor_and_lid, free_surface);
 }
 
-std::vector<double> rates(bool free_surface, double gravity) {
-  test::ModelSetup box(full_box(free_surface, gravity));
+std::vector<double> rates(const std::string& floor_and_lid, bool free_surface, double gravity) {
+  test::ModelSetup box(full_box(floor_and_lid, free_surface, gravity));
   return box.explicit_rate(box.state());
 }
 
 }  // namespace
 
-TEST_CASE("gravity is a force where there is a surface, and none in melt that fills its box") {
-  CHECK(rates(true, 1000) != rates(true, 1));
-  CHECK(rates(false, 1000) == rates(false, 1));
+TEST_CASE("gravity is a force but in melt that fills its box between floor and lid") {
+  CHECK(rates("wall", true, 1000) != rates("wall", true, 1));
+  CHECK(rates("wall", false, 1000) == rates("wall", false, 1));
+  CHECK(rates("periodic", false, 1000) != rates("periodic", false, 1));  // nothing holds it
 }
 
 }  // namespace meltray::scene
