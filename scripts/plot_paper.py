@@ -108,6 +108,7 @@ def draw_ratios(ax, rows, models, colours, prefix):
             some.sort(key=lambda r: int(r["f_hz"]))
             f = [int(r["f_hz"]) for r in some]
             half, interval = numbers(some, prefix + "half_range_mm_per_kw"), numbers(some, prefix + "half_range_95")
+            interval = [0 if i != i else i for i in interval]  # a single period has none
             ax.errorbar(f, half, yerr=interval, fmt="o-", color=colours[model], capsize=2, lw=1, ms=4,
                         mfc="none" if metal == "aluminium" else None, label=f"{metal}, {model}: half range")
             ax.plot(f, numbers(some, prefix + "harmonic_mm_per_kw"), "s--", color=colours[model], lw=1, ms=3,
