@@ -7,10 +7,12 @@
 #include <array>
 #include <utility>
 
+#include "meltray/scene/closed_box.hpp"
+
 namespace meltray::app {
 namespace {
 
-using scene::Body, scene::Domain, scene::FaceKind, scene::Scene, scene::ShapeKind;
+using scene::Body, scene::Domain, scene::Scene, scene::ShapeKind;
 
 // From the maps of stability: steps longer by this factor still left a weld's budgets and a pool or a drop in
 // order, and water that collapses inside its walls.
@@ -37,18 +39,13 @@ void step_factors(const Scene& s, std::vector<std::string>& found) {
 
 /// A box of walls that one body fills: there is no gas in it.
 bool closed_and_full(const Domain& domain) {
-  const auto closed = [&](int f) {
-    return (domain.dimension == 2 && f / 2 == 1) || domain.faces[f].kind != FaceKind::free;
-  };
-  for (int f = 0; f < 6; ++f)
-    if (!closed(f)) return false;
   const auto fills = [&](const Body& body) {
     bool all = body.shape == ShapeKind::box;
     for (int c = 0; c < domain.dimension; ++c)
       all = all && body.min[c] <= domain.min[c] && body.max[c] >= domain.max[c];
     return all;
   };
-  return std::any_of(domain.bodies.begin(), domain.bodies.end(), fills);
+  return scene::is_closed(domain) && std::any_of(domain.bodies.begin(), domain.bodies.end(), fills);
 }
 
 void full_boxes(const Scene& s, std::vector<std::string>& found) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "meltray/scene/closed_box.hpp"
 #include "scene/case_check.hpp"
 #include "scene/keys.hpp"
 
@@ -71,12 +72,7 @@ void check_terms(const Scene& scene, const Document& document) {
     inert(document, "terms.interface_viscosity", "both its coefficients are 0",
           "flow.interface_viscosity_free or flow.interface_viscosity_solid > 0");
   if (!scene.flow.free_surface) {
-    const auto& faces = scene.domain.faces;
-    const auto open = [&](int f) {
-      return (scene.domain.dimension == 3 || f / 2 != 1) && faces[f].kind == FaceKind::free;
-    };
-    bool any_open = false;
-    for (int f = 0; f < 6; ++f) any_open = any_open || open(f);
+    const bool any_open = !is_closed(scene.domain);
     if (any_open || t.surface_tension || t.recoil || t.evaporation || t.radiation || scene.laser)
       refuse(document.place("flow.free_surface"), "flow.free_surface",
              any_open ? "false with a free face" : "false with a term that acts on the free surface",
