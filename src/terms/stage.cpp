@@ -88,7 +88,7 @@ double Stage::area_of_spacing() const {
 std::size_t Stage::bytes() const {
   return held_bytes(volume, temperature, heat, lit, moving, heated, elastic, excess, fill, diagonal, exposure,
                     surface, area, surface_pressure, loose) +
-         held_bytes(grad_c) + held_bytes(normal);
+         held_bytes(grad_c) + held_bytes(normal) + held_bytes(wall_normal);
 }
 
 void prepare_stage(Stage& s, bool with_surface) {
@@ -117,7 +117,7 @@ void release_fields(Stage& s) {
   for (auto* a : {&s.volume, &s.temperature, &s.excess, &s.fill, &s.diagonal, &s.exposure, &s.surface,
                   &s.area, &s.surface_pressure})
     *a = {};
-  for (int c = 0; c < 3; ++c) s.grad_c[c] = s.normal[c] = {};
+  for (int c = 0; c < 3; ++c) s.grad_c[c] = s.normal[c] = s.wall_normal[c] = {};
 }
 
 void compute_surface(Stage& s) {

@@ -5,6 +5,29 @@
 
 namespace meltray::terms {
 
+namespace {
+
+template <int D>
+void normalise(std::array<double, D>& v) {
+  double norm = 0;
+  for (int c = 0; c < D; ++c) norm += v[c] * v[c];
+  norm = std::sqrt(norm);
+  for (int c = 0; c < D; ++c) v[c] = norm > 0 ? v[c] / norm : 0.0;
+}
+
+/// Turns n towards the normal that the wall prescribes, by its share.
+template <int D>
+void hold(const Components& wall_normal, Index i, std::array<double, D>& n) {
+  double share = 0;
+  for (int c = 0; c < D; ++c) share += wall_normal[c][i] * wall_normal[c][i];
+  if (share == 0) return;
+  share = std::sqrt(share);
+  for (int c = 0; c < D; ++c) n[c] = (1 - share) * n[c] + wall_normal[c][i];
+  normalise<D>(n);
+}
+
+}  // namespace
+
 double SurfaceTension::activation(const Stage& s, Index i) const {
   if (!s.patch->liquid[i] || s.loose[i]) return 0;
   if (ramp <= 0) return 1;
@@ -13,7 +36,8 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
 
 /// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the
 /// lattice, and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles'
-/// radius.
+/// radius. Where a wall prescribes the normal it is held: averaged with those above the wall only, it would
+/// lose half of its turn, and with it half of the force that moves the line of contact.
 void SurfaceTension::smooth_normals(const Stage& s) const {
   constexpr int kPasses = 2;
   sph::with_dim(s.constants->dim, [&](auto d) {
@@ -21,6 +45,7 @@ void SurfaceTension::smooth_normals(const Stage& s) const {
     with_kernel<D>(s.constants->kernel, [&](auto kernel) {
       using Kernel = decltype(kernel);
       const double* const surface = s.surface.data();
+      const bool held = !s.wall_normal[0].empty();
       smooth_ = s.normal;
       for (int pass = 0; pass < kPasses; ++pass) {
         previous_ = smooth_;
@@ -34,13 +59,10 @@ void SurfaceTension::smooth_normals(const Stage& s) const {
             return out;
           });
           const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
-          double norm = 0;
-          for (int c = 0; c < D; ++c) {
-            sum[c] += self * n[c][i];
-            norm += sum[c] * sum[c];
-          }
-          norm = std::sqrt(norm);
-          for (int c = 0; c < D; ++c) smooth_[c][i] = norm > 0 ? sum[c] / norm : 0.0;
+          for (int c = 0; c < D; ++c) sum[c] += self * n[c][i];
+          normalise<D>(sum);
+          if (held) hold<D>(s.wall_normal, i, sum);
+          for (int c = 0; c < D; ++c) smooth_[c][i] = sum[c];
         });
       }
     });

@@ -8,8 +8,10 @@ namespace meltray::terms {
 
 namespace {
 
-/// Wall colour (share of the Shepard sum that is solid) above which the normal is fully the triple-line one.
-constexpr double kWallColourFull = 0.2;
+/// Wall colour (share of the Shepard sum that is solid) above which the normal is fully the triple-line one:
+/// any particle but those at the end of the kernel's reach. With 0.2 the line stops twice as far from its
+/// angle.
+constexpr double kWallColourFull = 0.05;
 
 }  // namespace
 
@@ -21,7 +23,10 @@ void Wetting::turn_normals(Stage& s) const {
     const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
     const double* const volume = s.volume.data();
     const std::uint8_t* const liquid = s.patch->liquid.data();
-    for (int c = 0; c < D; ++c) turned_[c].resize(s.moving.size());
+    for (int c = 0; c < D; ++c) {
+      turned_[c].resize(s.moving.size());
+      s.wall_normal[c].assign(s.size(), 0.0);
+    }
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       for (int c = 0; c < D; ++c) turned_[c][k] = s.normal[c][i];
@@ -54,7 +59,9 @@ void Wetting::turn_normals(Stage& s) const {
       const double f = std::clamp(1 - colour / kWallColourFull, 0.0, 1.0);
       double mixed[D], size = 0;
       for (int c = 0; c < D; ++c) {
-        mixed[c] = f * s.normal[c][i] + (1 - f) * (sine * tangent[c] / length - cosine * nw[c]);
+        const double prescribed = sine * tangent[c] / length - cosine * nw[c];
+        s.wall_normal[c][i] = (1 - f) * prescribed;
+        mixed[c] = f * s.normal[c][i] + (1 - f) * prescribed;
         size += mixed[c] * mixed[c];
       }
       if (size < 1e-12) return;

@@ -56,13 +56,14 @@ struct Stage {
 
   // Free surface (filled by compute_surface when a term needs it; zero elsewhere, empty in scenes whose steps
   // have no surface).
-  std::vector<double> fill;              ///< Shepard sum over that of a full lattice
-  std::vector<double> diagonal;          ///< Laplacian sum over that of a full lattice
-  std::vector<double> exposure;          ///< |grad c| over that of a flat face, at most 1
-  std::vector<double> surface;           ///< 1 on the free surface, 0 inside, continuous in between
-  Components grad_c;                     ///< gradient of the colour function, into the material [1/m]
-  Components normal;                     ///< unit normal out of the material (zero where surface = 0)
-  std::vector<double> area;              ///< free-surface area carried by a particle [m^2; m in 2-D]
+  std::vector<double> fill;      ///< Shepard sum over that of a full lattice
+  std::vector<double> diagonal;  ///< Laplacian sum over that of a full lattice
+  std::vector<double> exposure;  ///< |grad c| over that of a flat face, at most 1
+  std::vector<double> surface;   ///< 1 on the free surface, 0 inside, continuous in between
+  Components grad_c;             ///< gradient of the colour function, into the material [1/m]
+  Components normal;             ///< unit normal out of the material (zero where surface = 0)
+  Components wall_normal;        ///< normal that a wall prescribes times its share; empty without wetting
+  std::vector<double> area;      ///< free-surface area carried by a particle [m^2; m in 2-D]
   std::vector<double> surface_pressure;  ///< recoil + sigma kappa, averaged over surface neighbours [Pa]
   std::vector<std::uint8_t> loose;  ///< liquid with too few neighbours to be a fluid: flies ballistically
 

@@ -76,3 +76,25 @@ TEST_CASE("wetting: a surface parallel to the wall has no triple line") {
   turn(s, 30);
   CHECK(s.stage.normal == before);
 }
+
+// The curvature along an upright face adds up to the turn of the normal between wall and face, so that the
+// surface pulls at the line with Young's sigma cos(theta), on a lattice 1.0 to 1.6 times as strongly. While
+// averaging normals undid the turn, nothing was left of it at 120 degrees.
+TEST_CASE("wetting: an upright face is pulled along the wall by sigma cos theta") {
+  for (double theta : {45.0, 60.0, 120.0, 135.0}) {
+    StageSetup s(2, kDx);
+    quarter(s);
+    turn(s, theta);
+    std::vector<double> pressure;
+    terms::SurfaceTension{}.pressure(s.stage, pressure);
+    double pull = 0;
+    for (Index i = 0; i < s.patch.size(); ++i) {
+      const Vec3 x = s.position(i) / kDx;
+      if (s.patch.liquid[i] && x[0] > 9 && x[1] < 12) pull -= pressure[i] * kDx;
+    }
+    const double young = s.constants.material.sigma(2000) * std::cos(theta * M_PI / 180);
+    CAPTURE(theta, pull / young);
+    CHECK(pull / young > 0.85);
+    CHECK(pull / young < 1.7);
+  }
+}
