@@ -62,13 +62,13 @@ def main():
         ax.legend()
     figure.savefig(folder / "depth.png")
 
+    whole = [r for r in rows if runs[id(r)]["time_s"][-1] * int(r["f_hz"]) >= 2]  # those with a period after the first
+    keys = sorted({(r["metal"], int(r["f_hz"])) for r in whole}) or keys
     figure, axes = panels(keys)
-    for r in rows:
+    for r in whole:
         h, f = runs[id(r)], int(r["f_hz"])
         phase = h["time_s"] * f
         late = phase >= 1
-        if phase[-1] < 2:
-            continue
         bins = np.linspace(0, 1, 26)
         place = np.digitize(phase[late] % 1, bins) - 1
         for name, scale, look in (("capillary_depth_m", 1e3, "-"), ("axis_depth_m", 1e3, ":"),
