@@ -23,13 +23,9 @@ void Wetting::turn_normals(Stage& s) const {
     const auto count = static_cast<std::ptrdiff_t>(s.moving.size());
     const double* const volume = s.volume.data();
     const std::uint8_t* const liquid = s.patch->liquid.data();
-    for (int c = 0; c < D; ++c) {
-      turned_[c].resize(s.moving.size());
-      s.wall_normal[c].assign(s.size(), 0.0);
-    }
+    for (int c = 0; c < D; ++c) s.wall_normal[c].assign(s.size(), 0.0);
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
-      for (int c = 0; c < D; ++c) turned_[c][k] = s.normal[c][i];
       if (s.surface[i] == 0) return;
       const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::PairLanes<D>& p) {
         const sph::Lanes v = (1 - p.of(liquid)) * p.of(volume);
@@ -65,10 +61,7 @@ void Wetting::turn_normals(Stage& s) const {
         size += mixed[c] * mixed[c];
       }
       if (size < 1e-12) return;
-      for (int c = 0; c < D; ++c) turned_[c][k] = mixed[c] / std::sqrt(size);
-    });
-    parallel_for(count, [&](std::ptrdiff_t k) {
-      for (int c = 0; c < D; ++c) s.normal[c][s.moving[k]] = turned_[c][k];
+      for (int c = 0; c < D; ++c) s.normal[c][i] = mixed[c] / std::sqrt(size);
     });
   });
 }

@@ -28,9 +28,6 @@ struct SurfaceTension {
 struct Wetting {
   double contact_angle_deg = 10;
   void turn_normals(Stage& stage) const;
-
- private:
-  mutable Components turned_;
 };
 
 enum class RecoilOnset { smooth, cutoff, ambient };
