@@ -14,6 +14,9 @@ namespace {
 constexpr double kGaussianCut = 2.5;
 // Fractional part of the golden ratio: successive angles of a sunflower spiral.
 constexpr double kGolden = 0.61803398874989484820;
+// From one set of rays to the next: place in the stratum and turn, a plane sequence of low discrepancy (powers
+// of the inverse plastic number, the real root of x^3 = x + 1).
+constexpr double kSetTurn = 0.75487766624669276, kSetPlace = 0.56984029099805327;
 constexpr int kRingRays = 8;
 
 double largest_radius(const BeamSpec& s) {
@@ -75,7 +78,7 @@ double Beam::radius(double distance_from_focus) const {
   return 0.5 * spec_.focal_diameter * std::hypot(1.0, distance_from_focus / spec_.rayleigh_length);
 }
 
-std::vector<Ray> Beam::rays(double t, int count, double start_height) const {
+std::vector<Ray> Beam::rays(double t, int count, double start_height, std::int64_t set) const {
   std::vector<Ray> rays;
   if (count <= 0) return rays;
   rays.reserve(static_cast<std::size_t>(count));
@@ -84,12 +87,15 @@ std::vector<Ray> Beam::rays(double t, int count, double start_height) const {
   const double inside = -std::expm1(-2 * kGaussianCut * kGaussianCut);  // power within the cut
   const Vec3 centre = focus(t), along = axis();
   const Vec3 e1(-along.z(), 0, along.x()), e2 = Vec3::UnitY();  // cross-section; e1 is +x without tilt
+  const double place = std::fmod(0.5 + static_cast<double>(set) * kSetPlace, 1.0),
+               turn = std::fmod(static_cast<double>(set) * kSetTurn, 1.0);
   for (int i = 0; i < count; ++i) {
-    // Inverse of the encircled power at the middle of the i-th stratum; golden angle around the axis.
-    const double u = (i + 0.5) / count;
+    // Inverse of the encircled power at some place of the i-th stratum, in set 0 its middle; golden angle
+    // around the axis.
+    const double u = (i + place) / count;
     const double r = spec_.profile == Profile::gaussian ? waist * std::sqrt(-0.5 * std::log1p(-u * inside))
                                                         : waist * std::sqrt(u);
-    const double angle = 2 * constants::pi * std::fmod(i * kGolden, 1.0);
+    const double angle = 2 * constants::pi * std::fmod(i * kGolden + turn, 1.0);
     const Vec3 outward = std::cos(angle) * e1 + std::sin(angle) * e2;
     const Vec3 around = std::cos(angle) * e2 - std::sin(angle) * e1;
     // Skew line of a one-sheeted hyperboloid: at distance s its radius is r sqrt(1 + s^2/z_R^2), as the

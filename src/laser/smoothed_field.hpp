@@ -45,18 +45,25 @@ class SmoothedField {
     Vec3 gradient;  ///< per step
   };
   /// Field at `local` in [0, 1]^3 of a cell.
-  Sample sample(const Cell& cell, const Vec3& local) const { return evaluate(metal_, cell, local); }
+  Sample sample(const Cell& cell, const Vec3& local) const;
   /// True where the particles around are liquid rather than solid.
   bool liquid(const Cell& cell, const Vec3& local) const;
 
  private:
-  void spread(const CloudSelection& cloud, float share);
-  void mark_phases(const CloudSelection& cloud);
+  /// Particles by the row of cells along x that they lie in: row r holds those numbered order[start[r]] to
+  /// order[start[r + 1] - 1]. Rows go from the one that ends below the first row of nodes; `planes` along z.
+  struct Rows {
+    std::ptrdiff_t along_y = 0, planes = 0;
+    std::vector<std::size_t> start, order;
+  };
+  Rows sort(const CloudSelection& cloud) const;
+  void spread(const CloudSelection& cloud, const Rows& rows, float share);
+  void mark_phases(const CloudSelection& cloud, const Rows& rows);
   /// Turns what the particles have spread into the coefficients of the field.
   void open_slits();
   void evaluate_corners();
-  /// Value and gradient of the spline with the given coefficients.
-  Sample evaluate(const std::vector<float>& coefficients, const Cell& cell, const Vec3& local) const;
+  template <class F>
+  void for_rows(const std::vector<float>& nodes, const Cell& cell, F&& f) const;
   std::size_t node(const Cell& c) const {
     return static_cast<std::size_t>(((c[2] + kPad[2]) * nodes_[1] + c[1] + kPad[1]) * nodes_[0] + c[0] +
                                     kPad[0]);

@@ -9,7 +9,6 @@
 
 #include "laser/bounce.hpp"
 #include "meltray/core/errors.hpp"
-#include "meltray/core/parallel.hpp"
 #include "meltray/laser/laser.hpp"
 
 namespace meltray::laser {
@@ -242,10 +241,10 @@ Trace Tracer::trace(std::span<const Ray> rays, const TraceOptions& options) cons
   ledger.rays = static_cast<std::int64_t>(rays.size());
   for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
     const std::size_t count = std::min(batch, rays.size() - begin);
-    parallel_for(static_cast<std::ptrdiff_t>(count), [&](std::ptrdiff_t r) {
-      const auto i = static_cast<std::size_t>(r);
+    // A ray is worth some hundred rows of a pair loop: shared out even if there are few.
+#pragma omp parallel for schedule(dynamic, 8)
+    for (std::size_t i = 0; i < count; ++i)
       fates[i] = impl_->follow(rays[begin + i], begin + i, options, place(i));
-    });
     for (std::size_t i = 0; i < count; ++i) {
       const Impl::Fate& f = fates[i];
       const double in = rays[begin + i].power;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "meltray/core/collect.hpp"
 #include "meltray/core/constants.hpp"
 #include "meltray/observe/pool.hpp"
 
@@ -79,18 +80,22 @@ class VoxelGrid {
   /// Adds every particle to the voxels around it. Slabs of voxels are filled side by side, each by its
   /// particles in ascending order, so that the sums do not depend on the number of threads.
   void spread(const Particles& p, double radius, float scale) {
+    std::vector<Index> near;
+    parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLightBlock, near,
+                     [&](std::ptrdiff_t i, std::vector<Index>& found) {
+                       if (p.has(i, kRemoved)) return;
+                       const Vec3 x = position(p, i);
+                       bool outside = false;
+                       for (int d = 0; d < 3; ++d)
+                         outside = outside || x[d] < origin_[d] - radius ||
+                                   x[d] > origin_[d] + n_[d] * voxel_ + radius;
+                       if (!outside) found.push_back(static_cast<Index>(i));
+                     });
     const std::int64_t slabs = (n_[2] + kSlab - 1) / kSlab;
     std::vector<std::vector<Index>> of_slab(slabs);
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (p.has(i, kRemoved)) continue;
-      const Vec3 x = position(p, i);
-      bool outside = false;
-      for (int d = 0; d < 2; ++d)
-        outside = outside || x[d] < origin_[d] - radius || x[d] > origin_[d] + n_[d] * voxel_ + radius;
-      if (outside) continue;
-      const auto [first, last] = reach(2, x[2], radius);
-      for (std::int64_t s = first / kSlab; first <= last && s <= last / kSlab; ++s)
-        of_slab[s].push_back(static_cast<Index>(i));
+    for (const Index i : near) {
+      const auto [first, last] = reach(2, position(p, i)[2], radius);
+      for (std::int64_t s = first / kSlab; first <= last && s <= last / kSlab; ++s) of_slab[s].push_back(i);
     }
 #pragma omp parallel for schedule(dynamic, 1)
     for (std::int64_t s = 0; s < slabs; ++s)

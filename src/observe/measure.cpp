@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "meltray/core/parallel.hpp"
 #include "meltray/observe/capillary.hpp"
 #include "meltray/observe/history.hpp"
 #include "meltray/observe/pool.hpp"
@@ -65,13 +66,12 @@ HistoryRow measure(const scene::Simulation& simulation, const StepsSinceRow& sin
     row.closed = capillary_closed(row.capillary_depth, row.axis_depth, spacing);
   }
 
-  double speed2 = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!is_material(p, i)) continue;
-    row.max_temperature = std::max(row.max_temperature, p.temperature[i]);
-    if (p.is_liquid(i)) speed2 = std::max(speed2, velocity(p, i).squaredNorm());
-  }
-  row.max_speed = std::sqrt(speed2);
+  const auto count = static_cast<std::ptrdiff_t>(p.size());
+  row.max_temperature = parallel_max(
+      count, row.max_temperature, [&](std::ptrdiff_t i) { return is_material(p, i) ? p.temperature[i] : 0.0; });
+  row.max_speed = std::sqrt(parallel_max(count, 0.0, [&](std::ptrdiff_t i) {
+    return is_material(p, i) && p.is_liquid(i) ? velocity(p, i).squaredNorm() : 0.0;
+  }));
   row.liquid = simulation.liquid_count();
   row.active = simulation.active_count();
   row.ejected_mass = simulation.mass().ejected;

@@ -7,6 +7,9 @@
 #include <map>
 #include <numeric>
 
+#include "meltray/core/collect.hpp"
+#include "meltray/core/parallel.hpp"
+
 namespace meltray::observe {
 namespace {
 
@@ -60,8 +63,10 @@ std::vector<std::int32_t> clusters(const Particles& p, const std::vector<std::in
 
 Pool measure_pool(const Particles& p, double spacing, std::optional<Vec3> beam, double reach) {
   std::vector<std::int32_t> liquid;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p.is_liquid(i) && is_material(p, i)) liquid.push_back(static_cast<std::int32_t>(i));
+  parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLightBlock, liquid,
+                   [&](std::ptrdiff_t i, std::vector<std::int32_t>& found) {
+                     if (p.is_liquid(i) && is_material(p, i)) found.push_back(static_cast<std::int32_t>(i));
+                   });
   Pool pool;
   if (liquid.empty()) return pool;
 
@@ -102,11 +107,12 @@ Pool measure_pool(const Particles& p, double spacing, std::optional<Vec3> beam, 
 }
 
 double top_surface(const Particles& p, double spacing, const Pool& pool) {
-  double top = pool.exists ? pool.max[2] : -1e300;
   // Frozen spatter is solid too, so re-solidified particles do not count here.
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (!p.is_liquid(i) && is_material(p, i) && !p.has(i, kResolidified))
-      top = std::max(top, position(p, i)[2]);
+  const double top = parallel_max(
+      static_cast<std::ptrdiff_t>(p.size()), pool.exists ? pool.max[2] : -1e300, [&](std::ptrdiff_t i) {
+        const bool counts = !p.is_liquid(i) && is_material(p, i) && !p.has(i, kResolidified);
+        return counts ? position(p, i)[2] : -1e300;
+      });
   return top > -1e300 ? top + 0.5 * spacing : 0;
 }
 

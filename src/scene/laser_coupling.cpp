@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "meltray/core/collect.hpp"
+#include "meltray/core/parallel.hpp"
 #include "meltray/scene/optics.hpp"
 
 namespace meltray::scene {
@@ -74,14 +76,15 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   const double beyond = 3 * constants_.spacing;
   selector.gather(particles, box.min - Vec3::Constant(beyond), box.max + Vec3::Constant(beyond), cloud_);
   std::erase_if(cloud_, [&](Index i) { return particles.is_wall(i); });
-  for (int c = 0; c < 3; ++c) {
-    cx_[c].resize(cloud_.size());
-    for (std::size_t k = 0; k < cloud_.size(); ++k) cx_[c][k] = particles.x[c][cloud_[k]];
-  }
-  std::vector<std::uint8_t> liquid(cloud_.size());
-  for (std::size_t k = 0; k < cloud_.size(); ++k) liquid[k] = particles.is_liquid(cloud_[k]);
+  for (auto& x : cx_) x.resize(cloud_.size());
+  liquid_.resize(cloud_.size());
+  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()), [&](std::ptrdiff_t k) {
+    const Index i = cloud_[k];
+    for (int c = 0; c < 3; ++c) cx_[c][k] = particles.x[c][i];
+    liquid_[k] = particles.is_liquid(i);
+  });
   const laser::PointCloud cloud{
-      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid.data(), constants_.spacing};
+      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid_.data(), constants_.spacing};
   tracer_.set_mesh(laser::reconstruct_surface(cloud, box));
 
   hits_.clear();
@@ -92,7 +95,7 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   if (beam_.power(t) <= 0) return;
   const laser::TraceOptions options = options_of(scene_);
   const int count = options.ray_error > 0 ? ray_count_.next() : options.rays;
-  const auto rays = beam_.rays(t, count, box.max[2] + constants_.spacing);
+  const auto rays = beam_.rays(t, count, box.max[2] + constants_.spacing, budget_.traces);
   laser::Trace trace = tracer_.trace(rays, options);
   ledger_ = trace.ledger;
   hits_ = std::move(trace.hits);
@@ -111,8 +114,11 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
                      selector.for_resting_near(particles, groups_[static_cast<std::size_t>(g)].centre, radius,
                                                [&](Index i) { near.push_back(i); });
                    });
+  // Neighbouring groups find the same particles: each is kept once before they are sorted.
+  seen_.resize(particles.size(), 0);
+  std::erase_if(lit_, [&](Index i) { return std::exchange(seen_[i], 1) != 0; });
+  for (const Index i : lit_) seen_[i] = 0;
   std::sort(lit_.begin(), lit_.end());
-  lit_.erase(std::unique(lit_.begin(), lit_.end()), lit_.end());
 }
 
 void LaserCoupling::group_hits() {
@@ -124,17 +130,16 @@ void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& powe
   undeposited_ = lost_;
   if (hits_.empty()) return;
   // Only surface particles take part; the cloud handed over is just them.
-  cloud_.clear();
-  weight_.clear();
-  for (Index i = 0; i < stage.size(); ++i)
-    if (stage.surface[i] > 0 && stage.heat[i] && !stage.loose[i]) {
-      cloud_.push_back(i);
-      weight_.push_back(stage.surface[i]);
-    }
-  for (int c = 0; c < 3; ++c) {
-    cx_[c].resize(cloud_.size());
-    for (std::size_t k = 0; k < cloud_.size(); ++k) cx_[c][k] = stage.patch->x[c][cloud_[k]];
-  }
+  parallel_collect(stage.size(), kLightBlock, cloud_, [&](std::ptrdiff_t i, std::vector<Index>& found) {
+    if (stage.surface[i] > 0 && stage.heat[i] && !stage.loose[i]) found.push_back(static_cast<Index>(i));
+  });
+  for (auto& x : cx_) x.resize(cloud_.size());
+  weight_.resize(cloud_.size());
+  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()), [&](std::ptrdiff_t k) {
+    const Index i = cloud_[k];
+    for (int c = 0; c < 3; ++c) cx_[c][k] = stage.patch->x[c][i];
+    weight_[k] = stage.surface[i];
+  });
   cloud_power_.assign(cloud_.size(), 0.0);
   const laser::PointCloud cloud{
       {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr, constants_.spacing};

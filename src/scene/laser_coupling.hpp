@@ -55,6 +55,8 @@ class LaserCoupling {
   bool stale_ = true;
   std::vector<double> weight_, cloud_power_, cx_[3];
   std::vector<Index> cloud_;
+  std::vector<std::uint8_t> liquid_;  ///< of the cloud of a trace
+  std::vector<std::uint8_t> seen_;    ///< per particle of the store, 0 between traces
 };
 
 }  // namespace meltray::scene

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
+#include <array>
 #include <cmath>
 
 #include "meltray/core/constants.hpp"
@@ -94,6 +95,34 @@ TEST_CASE("gaussian rays carry the power and the moments of the beam") {
   CHECK(yy == Approx(moment).epsilon(5e-3));
   CHECK(std::abs(xy) < 5e-3 * moment);
   CHECK(within_w == Approx((1 - std::exp(-2)) / (1 - cut)).margin(1.0 / n));
+}
+
+TEST_CASE("sets of few rays lie at other places and make up one of many") {
+  BeamSpec s = paper_beam();
+  s.incidence_deg = 0;
+  const Beam beam(s);
+  constexpr int kSets = 64, kRays = 50, kSectors = 12;
+  const Vec3 focus = beam.focus(0);
+  std::array<double, kSectors> sector{};
+  double inner = 0;
+  std::vector<Vec3> first;
+  for (int set = 0; set < kSets; ++set) {
+    const auto rays = beam.rays(0, kRays, focus.z(), set);
+    double power = 0;
+    for (const Ray& r : rays) {
+      const Vec3 p = r.origin - focus;
+      const double turn = std::atan2(p.y(), p.x()) / (2 * constants::pi) + 0.5;
+      sector[static_cast<std::size_t>(turn * kSectors) % kSectors] += 1.0 / (kSets * kRays);
+      inner += (p.norm() < 2e-5 ? 1.0 : 0.0) / (kSets * kRays);
+      power += r.power;
+    }
+    CHECK(power == Approx(beam.power(0)).epsilon(1e-12));
+    first.push_back(rays[7].origin);
+  }
+  for (const double share : sector) CHECK(share == Approx(1.0 / kSectors).epsilon(0.02));
+  // 1 - exp(-2 (r/w)^2) within a fifth of the radius at 1/e^2: four rays of fifty.
+  CHECK(inner == Approx(-std::expm1(-0.08) / -std::expm1(-12.5)).epsilon(0.02));
+  for (std::size_t k = 1; k < first.size(); ++k) CHECK((first[k] - first[0]).norm() > 1e-7);
 }
 
 TEST_CASE("top-hat rays fill the disc evenly") {
