@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "meltray/laser/laser.hpp"
 #include "meltray/terms/conduction.hpp"
 #include "meltray/terms/pressure/acoustic_pass.hpp"
 #include "meltray/terms/pressure/projection.hpp"
@@ -166,6 +167,61 @@ void acoustic_pairs(benchmark::State& state) {
   state.counters["slots"] = set.slots();
 }
 
+/// A capillary of 2.5 spacings' radius, disordered, `depth` spacings deep, and the light in it.
+struct Capillary {
+  explicit Capillary(int depth) {
+    test::Noise noise(5);
+    for (int k = 0; k < depth + 15; ++k)
+      for (int j = -12; j < 12; ++j)
+        for (int i = -12; i < 12; ++i) {
+          const Vec3 x(i + 0.5, j + 0.5, -k - 0.5);
+          if (k < depth && x.head<2>().norm() < 2.5) continue;
+          for (int c = 0; c < 3; ++c)
+            position[static_cast<std::size_t>(c)].push_back(kSpacing * (x[c] + kJitter * noise()));
+          liquid.push_back(x.head<2>().norm() < 4.5 ? 1 : 0);
+        }
+    region = {Vec3(-9, -9, -depth - 6) * kSpacing, Vec3(9, 9, 6) * kSpacing};
+  }
+  laser::SurfaceMesh mesh() const {
+    return laser::reconstruct_surface({{position[0].data(), position[1].data(), position[2].data()},
+                                       position[0].size(),
+                                       liquid.data(),
+                                       kSpacing},
+                                      region);
+  }
+  std::array<std::vector<double>, 3> position;
+  std::vector<std::uint8_t> liquid;
+  laser::Box region;
+};
+
+void light_mesh(benchmark::State& state) {
+  const Capillary capillary(static_cast<int>(state.range(0)));
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = capillary.mesh().triangles.size();
+  state.counters["particles"] = static_cast<double>(capillary.position[0].size());
+  state.counters["triangles"] = static_cast<double>(triangles);
+}
+
+void light_tree(benchmark::State& state) {
+  const laser::SurfaceMesh mesh = Capillary(static_cast<int>(state.range(0))).mesh();
+  laser::Tracer tracer;
+  for (auto _ : state) tracer.set_mesh(mesh);
+}
+
+void light_rays(benchmark::State& state) {
+  laser::Tracer tracer;
+  tracer.set_mesh(Capillary(static_cast<int>(state.range(0))).mesh());
+  laser::BeamSpec spec;
+  spec.power = 2000;
+  spec.focal_diameter = 2e-4;
+  laser::TraceOptions options;
+  options.index_solid = options.index_liquid = {3.6, 5.0};
+  const auto rays = laser::Beam(spec).rays(0, 300, 10 * kSpacing);
+  std::size_t hits = 0;
+  for (auto _ : state) hits = tracer.trace(rays, options).hits.size();
+  state.counters["hits"] = static_cast<double>(hits);
+}
+
 }  // namespace
 
 #define MELTRAY_SIZES ->Arg(14)->Arg(27)->Arg(46)->Unit(benchmark::kMillisecond)->UseRealTime()
@@ -180,4 +236,7 @@ BENCHMARK(acoustic_pairs) MELTRAY_SIZES;
 BENCHMARK(pressure_assembly) MELTRAY_SIZES;
 BENCHMARK(pressure_product) MELTRAY_SIZES;
 BENCHMARK(pressure_solve)->ArgsProduct({{14, 27, 46}, {3, 6}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(light_mesh)->Arg(30)->Arg(60)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(light_tree)->Arg(60)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(light_rays)->Arg(60)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_MAIN();
