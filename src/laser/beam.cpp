@@ -14,8 +14,8 @@ namespace {
 constexpr double kGaussianCut = 2.5;
 // Fractional part of the golden ratio: successive angles of a sunflower spiral.
 constexpr double kGolden = 0.61803398874989484820;
-// From one set of rays to the next: place in the stratum and turn, a plane sequence of low discrepancy (powers
-// of the inverse plastic number, the real root of x^3 = x + 1).
+// From one set of rays to the next: place in the stratum and turn, a plane sequence of low discrepancy
+// (powers of the inverse plastic number, the real root of x^3 = x + 1).
 constexpr double kSetTurn = 0.75487766624669276, kSetPlace = 0.56984029099805327;
 constexpr int kRingRays = 8;
 

@@ -34,10 +34,10 @@ std::optional<double> crop_plane(const std::vector<Vec3>& position, int axis, do
     }
     return found;
   };
-  const Layers all = parallel_reduce(
-      static_cast<std::ptrdiff_t>(position.size()), Layers{}, count, [](const Layers& a, const Layers& b) {
-        return Layers{a.before + b.before, a.beyond + b.beyond, a.sum + b.sum};
-      });
+  const Layers all = parallel_reduce(static_cast<std::ptrdiff_t>(position.size()), Layers{}, count,
+                                     [](const Layers& a, const Layers& b) {
+                                       return Layers{a.before + b.before, a.beyond + b.beyond, a.sum + b.sum};
+                                     });
   if (all.before == 0 || 2 * all.beyond >= all.before) return std::nullopt;
   return all.sum / static_cast<double>(all.before) + 0.5 * outward * spacing;
 }
@@ -96,7 +96,9 @@ CloudSelection select_cloud(const PointCloud& cloud, const Box& region, double m
         }
         return part;
       },
-      [](const Box& a, const Box& b) { return Box{a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; });
+      [](const Box& a, const Box& b) {
+        return Box{a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
+      });
   // One axis after the other, so that edges and corners are continued too.
   for (int axis = 0; axis < 3; ++axis) {
     const auto low_plane = crop_plane(s.position, axis, region.min[axis], -1, cloud.spacing);

@@ -20,6 +20,8 @@ constexpr double kDepositRadius = 1.3;
 constexpr double kHitGroup = 0.5;
 /// Edge of the cubes in which the error of a trace is taken, in spacings: about as far as hits are spread.
 constexpr double kErrorCube = 2;
+/// Spacings around what light reaches that the surface there depends on: reach of its smoothed field and more.
+constexpr double kMargin = 4;
 
 laser::TraceOptions options_of(const Scene& scene) {
   laser::TraceOptions o = scene.laser->trace;
@@ -43,7 +45,7 @@ bool LaserCoupling::due(double t) const {
 
 laser::Box LaserCoupling::region(double t, const Particles& particles, const PatchSelector& selector) const {
   // The footprint of the beam on the top, the melt around it and where light went last time, with a margin.
-  const double margin = 6 * constants_.spacing;
+  const double margin = kMargin * constants_.spacing;
   const laser::BeamSpec& spec = beam_.spec();
   const Vec3 focus = beam_.focus(t), axis = beam_.axis();
   const double reach = 2.5 * beam_.radius(std::abs(spec.focus_z)) + margin;

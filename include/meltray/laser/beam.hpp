@@ -51,8 +51,8 @@ class Beam {
   double radius(double distance_from_focus) const;  ///< beam radius at a distance along the axis [m]
   /// `count` rays of equal power power(t)/count, stratified over the profile by a low-discrepancy sequence,
   /// starting above z = start_height. Sets of other numbers (>= 0) have their rays at other places, evenly
-  /// spread in between, so that many traces of few rays light what one of many would. Divergent beams get hyperboloid rays whose
-  /// envelope is radius(). A gaussian is cut at 2.5 radii of 1/e^2 and renormalised.
+  /// spread in between, so that many traces of few rays light what one of many would. Divergent beams get
+  /// hyperboloid rays whose envelope is radius(). A gaussian is cut at 2.5 radii of 1/e^2 and renormalised.
   std::vector<Ray> rays(double t, int count, double start_height, std::int64_t set = 0) const;
   /// A small bundle along the axis (the axis itself and a ring at a quarter of the focal radius), zero power.
   std::vector<Ray> axis_bundle(double t, double start_height) const;
