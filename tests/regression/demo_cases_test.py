@@ -44,7 +44,6 @@ class DemoCases(Scratch):
         self.assertLess(numpy.abs(centre[-1] - centre[0]).max(), 1e-8)
         self.assertLess(elongation(snapshots(folder)[-1]), elongation(snapshots(folder)[0]))
 
-    @unittest.expectedFailure
     def test_drop_oscillates(self):
         """A quarter of Rayleigh's period (0.38 ms) after its start the drop is about round, at half of it oblate."""
         folder = run(CASES / "drop.toml", self.folder / "drop", "--until", "8e-4")

@@ -8,8 +8,8 @@ namespace meltray::terms {
 
 /// How the surface pressure q (recoil + sigma kappa) meets the pressure field.
 ///   csf: the continuum surface force 2 q grad c / rho acts on the particles of the surface layer, against
-///   the
-///        surface part 2 p grad c / rho of the pressure gradient of Eq. (3);
+///        the surface part 2 p grad c / rho of the pressure gradient of Eq. (3), both scaled so that the
+///        gradient of a pressure that falls linearly to q on a flat face is exact in the outermost layer;
 ///   pressure: q is only the boundary value of p, and the gradient is the renormalised difference form.
 enum class SurfaceEntry { csf, pressure };
 
