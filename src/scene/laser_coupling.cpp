@@ -20,7 +20,8 @@ constexpr double kDepositRadius = 1.3;
 constexpr double kHitGroup = 0.5;
 /// Edge of the cubes in which the error of a trace is taken, in spacings: about as far as hits are spread.
 constexpr double kErrorCube = 2;
-/// Spacings around what light reaches that the surface there depends on: reach of its smoothed field and more.
+/// Spacings around what light reaches that the surface there depends on: reach of its smoothed field and
+/// more.
 constexpr double kMargin = 4;
 
 laser::TraceOptions options_of(const Scene& scene) {
