@@ -106,9 +106,10 @@ Rows dam_break_lobovsky(const Setting& setting) {
   const Table reference(setting.folder / "reference.csv");
   const double peak = reference.number(0, "value"), time = reference.number(1, "value");
   // The reference is the median of repeats, and so is what is judged: from one spacing to the next the peak
-  // changes by a third, as from one repeat of the experiment to the next.
+  // changes by a third, as from one repeat of the experiment to the next. Below 22 across the tallest of the
+  // knocks of WCSPH, by which the time is taken, is a late one (time 7 to 8 % off).
   const std::vector<std::vector<int>> spacings =
-      setting.small ? std::vector<std::vector<int>>{{20}}
+      setting.small ? std::vector<std::vector<int>>{{24}}
                     : std::vector<std::vector<int>>{{30}, {56, 58, 60, 62, 64}};
   Rows rows;
   for (const Model& m : collapse_models())
