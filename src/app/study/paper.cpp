@@ -25,8 +25,6 @@ namespace {
 constexpr double kSeedJitter = 0.05;
 /// Of Young's modulus in the row with elastic solid: sound in it is then as slow as in the melt.
 constexpr double kModulusScale = 1e-4;
-/// Of the slow step in that row: its solid moves within it.
-constexpr double kElasticStep = 0.5;
 constexpr const char* kIsph = "isph";
 
 /// Steps, speed of sound and artificial viscosity of a metal's weakly compressible cases, for another row or
@@ -34,13 +32,11 @@ constexpr const char* kIsph = "isph";
 std::vector<std::string> of_weakly_compressible(const fs::path& cases, const std::string& metal,
                                                 const std::string& model) {
   const scene::Scene like = scene::read_case(cases / fmt::format("weld_{}_100hz_wcsph_reduced.toml", metal));
-  const scene::Preset& row = scene::preset_of(model);
-  const double share = row.solid == scene::SolidModel::elastic ? kElasticStep : 1.0;
-  std::vector<std::string> set = {
-      "time.method=multirate", fmt::format("time.fixed_step_s={}", share * like.time.integrator.fixed_step),
-      fmt::format("time.cfl_acoustic={}", like.time.cfl_acoustic),
-      fmt::format("flow.sound_speed_m_s={}", like.flow.sound_speed)};
-  if (row.artificial_viscosity)
+  std::vector<std::string> set = {"time.method=multirate",
+                                  fmt::format("time.fixed_step_s={}", like.time.integrator.fixed_step),
+                                  fmt::format("time.cfl_acoustic={}", like.time.cfl_acoustic),
+                                  fmt::format("flow.sound_speed_m_s={}", like.flow.sound_speed)};
+  if (scene::preset_of(model).artificial_viscosity)
     set.push_back(fmt::format("flow.artificial_viscosity={}", like.flow.artificial_viscosity));
   return set;
 }
