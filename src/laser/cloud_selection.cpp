@@ -69,7 +69,7 @@ CloudSelection select_cloud(const PointCloud& cloud, const Box& region, double m
     return Vec3(cloud.position[0][i], cloud.position[1][i], cloud.position[2][i]);
   };
   std::vector<std::size_t> chosen;
-  parallel_collect(static_cast<std::ptrdiff_t>(cloud.size), kLightBlock, chosen,
+  parallel_collect(static_cast<std::ptrdiff_t>(cloud.size), kLight.size, chosen,
                    [&](std::ptrdiff_t i, std::vector<std::size_t>& found) {
                      const Vec3 x = at(static_cast<std::size_t>(i));
                      // A comparison with NaN is false.

@@ -55,29 +55,28 @@ struct alignas(64) Splat {
 /// particles whose first node is the same modulo four, are read as they are written, or not at all.
 class RowSums {
  public:
-  explicit RowSums(std::ptrdiff_t nodes) : length_((static_cast<std::size_t>(nodes) + 7) / 4 * 4) {
-    for (auto& line : line_) line.resize(length_);
+  explicit RowSums(std::ptrdiff_t nodes) {
+    for (auto& line : line_) line.resize(static_cast<std::size_t>(nodes) + 2 * kShift);
   }
   void clear() {
     for (auto& line : line_) std::fill(line.begin(), line.end(), 0.0F);
   }
   void add(const Splat& s, float weight) {
     const auto first = static_cast<std::size_t>(s.first_x), offset = first % 4;
-    float* const four = line_[offset].data() + (first - offset);
+    float* const four = line_[offset].data() + (first - offset + kShift);
     (load(four) + weight * load(s.x.data())).copy_to(four, stdx::element_aligned);
   }
   void write(float* row, std::ptrdiff_t nodes) const {
-    for (std::ptrdiff_t i = 0; i < nodes; ++i) {
-      float sum = 0;
-      for (std::ptrdiff_t d = 0; d < 4; ++d)
-        if (i >= d) sum += line_[static_cast<std::size_t>(d)][static_cast<std::size_t>(i - d)];
-      row[i] = sum;
+    std::fill_n(row, nodes, 0.0F);
+    for (std::size_t d = 0; d < 4; ++d) {
+      const float* const line = line_[d].data() + (kShift - d);
+      for (std::ptrdiff_t i = 0; i < nodes; ++i) row[i] += line[i];
     }
   }
 
  private:
-  std::size_t length_;
-  std::array<std::vector<float>, 4> line_;  // line d, entry k: node k + d
+  static constexpr std::size_t kShift = 4;
+  std::array<std::vector<float>, 4> line_;  // line d, entry kShift + k: node k + d
 };
 
 float ramp(float x, float none, float full) {

@@ -9,6 +9,7 @@
 
 #include "meltray/core/collect.hpp"
 #include "meltray/core/constants.hpp"
+#include "meltray/core/parallel.hpp"
 #include "meltray/observe/pool.hpp"
 
 namespace meltray::observe {
@@ -81,7 +82,7 @@ class VoxelGrid {
   /// particles in ascending order, so that the sums do not depend on the number of threads.
   void spread(const Particles& p, double radius, float scale) {
     std::vector<Index> near;
-    parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLightBlock, near,
+    parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLight.size, near,
                      [&](std::ptrdiff_t i, std::vector<Index>& found) {
                        if (p.has(i, kRemoved)) return;
                        const Vec3 x = position(p, i);

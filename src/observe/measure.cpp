@@ -67,9 +67,8 @@ HistoryRow measure(const scene::Simulation& simulation, const StepsSinceRow& sin
   }
 
   const auto count = static_cast<std::ptrdiff_t>(p.size());
-  row.max_temperature = parallel_max(count, row.max_temperature, [&](std::ptrdiff_t i) {
-    return is_material(p, i) ? p.temperature[i] : 0.0;
-  });
+  row.max_temperature =
+      parallel_max(count, 0.0, [&](std::ptrdiff_t i) { return is_material(p, i) ? p.temperature[i] : 0.0; });
   row.max_speed = std::sqrt(parallel_max(count, 0.0, [&](std::ptrdiff_t i) {
     return is_material(p, i) && p.is_liquid(i) ? velocity(p, i).squaredNorm() : 0.0;
   }));

@@ -63,7 +63,7 @@ std::vector<std::int32_t> clusters(const Particles& p, const std::vector<std::in
 
 Pool measure_pool(const Particles& p, double spacing, std::optional<Vec3> beam, double reach) {
   std::vector<std::int32_t> liquid;
-  parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLightBlock, liquid,
+  parallel_collect(static_cast<std::ptrdiff_t>(p.size()), kLight.size, liquid,
                    [&](std::ptrdiff_t i, std::vector<std::int32_t>& found) {
                      if (p.is_liquid(i) && is_material(p, i)) found.push_back(static_cast<std::int32_t>(i));
                    });

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "meltray/core/collect.hpp"
 #include "meltray/core/parallel.hpp"
@@ -79,16 +78,10 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
   const double beyond = 3 * constants_.spacing;
   selector.gather(particles, box.min - Vec3::Constant(beyond), box.max + Vec3::Constant(beyond), cloud_);
   std::erase_if(cloud_, [&](Index i) { return particles.is_wall(i); });
-  for (auto& x : cx_) x.resize(cloud_.size());
   liquid_.resize(cloud_.size());
-  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()), [&](std::ptrdiff_t k) {
-    const Index i = cloud_[k];
-    for (int c = 0; c < 3; ++c) cx_[c][k] = particles.x[c][i];
-    liquid_[k] = particles.is_liquid(i);
-  });
-  const laser::PointCloud cloud{
-      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid_.data(), constants_.spacing};
-  tracer_.set_mesh(laser::reconstruct_surface(cloud, box));
+  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()),
+               [&](std::ptrdiff_t k) { liquid_[k] = particles.is_liquid(cloud_[k]); });
+  tracer_.set_mesh(laser::reconstruct_surface(cloud_at(particles.x, liquid_.data()), box));
 
   hits_.clear();
   ledger_ = {};
@@ -117,11 +110,17 @@ void LaserCoupling::trace(double t, const PatchSelector& selector, const Particl
                      selector.for_resting_near(particles, groups_[static_cast<std::size_t>(g)].centre, radius,
                                                [&](Index i) { near.push_back(i); });
                    });
-  // Neighbouring groups find the same particles: each is kept once before they are sorted.
-  seen_.resize(particles.size(), 0);
-  std::erase_if(lit_, [&](Index i) { return std::exchange(seen_[i], 1) != 0; });
-  for (const Index i : lit_) seen_[i] = 0;
   std::sort(lit_.begin(), lit_.end());
+  lit_.erase(std::unique(lit_.begin(), lit_.end()), lit_.end());
+}
+
+/// The particles of cloud_, which stand at x, for the room of the laser.
+laser::PointCloud LaserCoupling::cloud_at(const Components& x, const std::uint8_t* liquid) {
+  for (auto& along : cx_) along.resize(cloud_.size());
+  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()), [&](std::ptrdiff_t k) {
+    for (int c = 0; c < 3; ++c) cx_[c][k] = x[c][cloud_[k]];
+  });
+  return {{cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), liquid, constants_.spacing};
 }
 
 void LaserCoupling::group_hits() {
@@ -133,19 +132,14 @@ void LaserCoupling::deposit(const terms::Stage& stage, std::vector<double>& powe
   undeposited_ = lost_;
   if (hits_.empty()) return;
   // Only surface particles take part; the cloud handed over is just them.
-  parallel_collect(stage.size(), kLightBlock, cloud_, [&](std::ptrdiff_t i, std::vector<Index>& found) {
+  parallel_collect(stage.size(), kLight.size, cloud_, [&](std::ptrdiff_t i, std::vector<Index>& found) {
     if (stage.surface[i] > 0 && stage.heat[i] && !stage.loose[i]) found.push_back(static_cast<Index>(i));
   });
-  for (auto& x : cx_) x.resize(cloud_.size());
   weight_.resize(cloud_.size());
-  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()), [&](std::ptrdiff_t k) {
-    const Index i = cloud_[k];
-    for (int c = 0; c < 3; ++c) cx_[c][k] = stage.patch->x[c][i];
-    weight_[k] = stage.surface[i];
-  });
+  parallel_for(static_cast<std::ptrdiff_t>(cloud_.size()),
+               [&](std::ptrdiff_t k) { weight_[k] = stage.surface[cloud_[k]]; });
   cloud_power_.assign(cloud_.size(), 0.0);
-  const laser::PointCloud cloud{
-      {cx_[0].data(), cx_[1].data(), cx_[2].data()}, cloud_.size(), nullptr, constants_.spacing};
+  const laser::PointCloud cloud = cloud_at(stage.patch->x, nullptr);
   undeposited_ += laser::deposit(hits_, groups_, cloud, weight_.data(), kDepositRadius * constants_.spacing,
                                  cloud_power_.data());
   for (std::size_t k = 0; k < cloud_.size(); ++k) power[cloud_[k]] = cloud_power_[k];

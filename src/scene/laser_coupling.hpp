@@ -38,6 +38,7 @@ class LaserCoupling {
 
  private:
   void group_hits();
+  laser::PointCloud cloud_at(const Components& x, const std::uint8_t* liquid);
   laser::Box region(double t, const Particles& particles, const PatchSelector& selector) const;
 
   const Scene& scene_;
@@ -56,7 +57,6 @@ class LaserCoupling {
   std::vector<double> weight_, cloud_power_, cx_[3];
   std::vector<Index> cloud_;
   std::vector<std::uint8_t> liquid_;  ///< of the cloud of a trace
-  std::vector<std::uint8_t> seen_;    ///< per particle of the store, 0 between traces
 };
 
 }  // namespace meltray::scene

@@ -7,9 +7,6 @@
 
 namespace meltray {
 
-/// Block for items of a few operations each.
-inline constexpr std::ptrdiff_t kLightBlock = 4096;
-
 /// Calls f(i, found) for i in [0, n), which appends what it finds to `found`; afterwards `out` holds all of
 /// it in the order of i. Blocks of `block` consecutive i run side by side.
 template <class T, class F>

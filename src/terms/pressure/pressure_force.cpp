@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/terms/pressure/weakly_compressible.hpp"
 
+#include "terms/pressure/surface_part.hpp"
+
 namespace meltray::terms {
 
 void PressureForce::add_surface_force(const Stage& s, const MutField& acceleration) const {
-  // Of sums the half that the open side lacks; of differences what makes a linear pressure exact on a flat
-  // face, as in Projection::add_acceleration().
-  const double scale = 2 / (form == GradientForm::sum ? s.constants->lattice.second_moment
-                                                      : s.constants->lattice.face_gradient);
+  const auto& lattice = s.constants->lattice;
+  const double scale = form == GradientForm::sum ? 2 / lattice.second_moment : surface_part(lattice);
   parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
     const Index i = s.moving[k];
     const double jump = form == GradientForm::sum

@@ -5,6 +5,7 @@
 
 #include "meltray/core/memory.hpp"
 #include "meltray/sph/renormalise.hpp"
+#include "terms/pressure/surface_part.hpp"
 
 namespace meltray::terms {
 
@@ -272,10 +273,8 @@ void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutF
         gradient *= plain;
       }
       if (entry == SurfaceEntry::csf) {
-        // Differences see half of a gradient across a flat face; with q half a spacing above the outermost
-        // layer the other half is (p - q) grad c times this, 2 but for what the sum of the lattice is off.
         const double jump =
-            2 / s.constants->lattice.face_gradient * s.surface[i] * (p[i] - s.surface_pressure[i]);
+            surface_part(s.constants->lattice) * s.surface[i] * (p[i] - s.surface_pressure[i]);
         for (int c = 0; c < D; ++c) gradient[c] += jump * s.grad_c[c][i];
       }
       for (int c = 0; c < D; ++c) acceleration[c][i] -= gradient[c] / rho;
