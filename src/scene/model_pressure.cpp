@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "meltray/core/errors.hpp"
 #include "scene/model.hpp"
@@ -104,12 +105,15 @@ std::string Model::blame(Index i, double dt) {
     });
   update_surface_pressure();
   if (weakly_compressible()) {
+    const double alpha = std::exchange(acoustic_->artificial.alpha, 0.0);
     acoustic_->evaluate(stage);
-    pull("pressure", [&](auto& a) { acoustic_->add_pressure_force(stage, a); });
+    pull("pressure", [&](auto& a) { acoustic_->add_force(stage, a); });
     if (needs_surface())
       pull("surface force", [&](auto& a) { acoustic_->force.add_surface_force(stage, a); });
-    if (acoustic_->artificial.alpha > 0)
-      pull("artificial viscosity", [&](auto& a) { acoustic_->add_artificial_viscosity(stage, a); });
+    acoustic_->artificial.alpha = alpha;
+    acoustic_->evaluate(stage);
+    if (alpha > 0)
+      pull("pressure with artificial viscosity", [&](auto& a) { acoustic_->add_force(stage, a); });
   } else {
     projection.assemble(stage);
   }

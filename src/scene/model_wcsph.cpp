@@ -56,13 +56,9 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   rates.density = density_rate_.data();
   acoustic_->evaluate(stage);
   acoustic_->add_density_rate(stage, rates.density);
-  acoustic_->add_pressure_force(stage, rates.acceleration);
+  acoustic_->add_force(stage, rates.acceleration);
   if (needs_surface()) acoustic_->force.add_surface_force(stage, rates.acceleration);
   crossings.pressure = force_gained();
-  if (acoustic_->artificial.alpha > 0) {
-    acoustic_->add_artificial_viscosity(stage, rates.acceleration);
-    crossings.viscosity += force_gained();
-  }
   if (has_elastic_solid()) add_elastic_rates(rates);
   note_largest_acceleration();
 }

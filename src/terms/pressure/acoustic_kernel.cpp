@@ -3,6 +3,7 @@
 // cmake/instruction_set.cmake.
 #include "terms/pressure/acoustic_kernel.hpp"
 
+#include <cmath>
 #include <experimental/simd>
 #ifdef __AVX512F__
 #include <immintrin.h>
@@ -28,13 +29,13 @@ inline double sum(const Lanes& lanes) {
   return std::experimental::reduce(lanes);
 }
 
-/// 1 / x to the last digit but one. Where 512-bit registers share one unit for roots and quotients, that unit
-/// is what a pass waits for: with an estimate of 14 bits, refined twice, it has only the roots to do.
+/// 1 / x to 42 bits at least. Where 512-bit registers share one unit for roots and quotients, that unit is what
+/// a pass waits for: an estimate of 14 bits and one step of third order leave it the roots alone.
 inline Lanes inverse(const Lanes& x) {
 #ifdef __AVX512F__
   const Lanes first(_mm512_rcp14_pd(static_cast<__m512d>(x)));
-  const Lanes second = first + first * (1 - x * first);
-  return second + second * (1 - x * second);
+  const Lanes error = 1 - x * first;
+  return first + first * (error + error * error);
 #else
   return 1 / x;
 #endif
@@ -47,25 +48,25 @@ inline void for_pieces(const OctetLists& lists, Index group, F&& f) {
     for (Index lane = 0; lane < kLanes; lane += kWidth) f(lists.octet[k] * kLanes + lane);
 }
 
-/// 1/h, alpha/h^D and `slope` alpha/h^(D+2) of a kernel of sph/kernel.hpp.
+/// 1/h and alpha/h^D of a kernel of sph/kernel.hpp.
 template <int D, class Plain>
 struct Scaled {
-  double inverse_h, scale_w, scale_f;
-  Scaled(double h, double slope)
-      : inverse_h(1 / h),
-        scale_w(Plain::kAlpha / (D == 2 ? h * h : h * h * h)),
-        scale_f(slope * scale_w * inverse_h * inverse_h) {}
+  double inverse_h, scale_w;
+  explicit Scaled(double h)
+      : inverse_h(1 / h), scale_w(Plain::kAlpha / (D == 2 ? h * h : h * h * h)) {}
 };
 
-/// sph::WendlandC2 over registers.
+/// sph::WendlandC2 over registers. The factor of its F is inside the cube.
 template <int D>
 struct Wendland : Scaled<D, sph::WendlandC2<D>> {
   using Base = Scaled<D, sph::WendlandC2<D>>;
-  using Base::inverse_h, Base::scale_w, Base::scale_f;
-  explicit Wendland(double h) : Base(h, -5) {}
+  using Base::inverse_h, Base::scale_w;
+  double root_f, slope_f;
+  explicit Wendland(double h)
+      : Base(h), root_f(std::cbrt(-5 * scale_w * inverse_h * inverse_h)), slope_f(0.5 * inverse_h * root_f) {}
   Lanes f(const Lanes& r) const {
-    const Lanes t = max(Lanes(1) - 0.5 * inverse_h * r, Lanes(0));
-    return scale_f * t * t * t;
+    const Lanes t = min(root_f - slope_f * r, Lanes(0));
+    return t * t * t;
   }
   Lanes w(const Lanes& r) const {
     const Lanes t = max(Lanes(1) - 0.5 * inverse_h * r, Lanes(0)), t2 = t * t;
@@ -77,13 +78,13 @@ struct Wendland : Scaled<D, sph::WendlandC2<D>> {
 template <int D>
 struct Cubic : Scaled<D, sph::CubicSpline<D>> {
   using Base = Scaled<D, sph::CubicSpline<D>>;
-  using Base::inverse_h, Base::scale_w, Base::scale_f;
-  explicit Cubic(double h) : Base(h, 1) {}
+  using Base::inverse_h, Base::scale_w;
+  explicit Cubic(double h) : Base(h) {}
   Lanes f(const Lanes& r) const {
     const Lanes q = inverse_h * r, a = max(2 - q, Lanes(0));
     Lanes f = -0.5 * a * a / max(q, Lanes(1));
     where(q < 1, f) = 1.5 * q - 2;
-    return scale_f * f;
+    return scale_w * inverse_h * inverse_h * f;
   }
   Lanes w(const Lanes& r) const {
     const Lanes q = inverse_h * r, a = max(2 - q, Lanes(0)), b = max(1 - q, Lanes(0));
@@ -102,12 +103,6 @@ inline Lanes dot(const Vector<D>& a, const Vector<D>& b) {
   for (int c = 1; c < D; ++c) s += a.x[c] * b.x[c];
   return s;
 }
-
-/// The particle of one row.
-template <int D>
-struct Row {
-  double x[D], v[D], gradient[D], density, pressure, excess;
-};
 
 template <bool Periodic, int D>
 inline Vector<D> separation(const AcousticArguments& a, const double (&xi)[D], const Vector<D>& xj) {
@@ -191,46 +186,63 @@ void excess_gradient_of(const AcousticArguments& arguments, Index begin, Index e
   }
 }
 
-/// Sums of one row.
-template <int D>
-struct Sums {
-  Lanes rate{}, pressure[D]{}, viscous[D]{};
+/// Terms of a pass; what is off is not in its loops.
+template <bool Periodic, bool Diffusion, bool Gradients, bool Viscosity, bool Stress>
+struct Terms {
+  static constexpr bool periodic = Periodic, diffusion = Diffusion, gradients = Gradients,
+                        viscosity = Viscosity, stress = Stress;
 };
 
-/// Terms of a pass; what is off is not in its loops.
-template <bool Periodic, bool Diffusion, bool Viscosity, bool Stress>
-struct Terms {
-  static constexpr bool periodic = Periodic, diffusion = Diffusion, viscosity = Viscosity, stress = Stress;
+/// The particle of one row, and its sums. What all of its pairs have in common is left to the end of the row:
+/// d rho/dt = rate_factor sum_j V_j F_ij rate_ij, force = sum_j V_j F_ij pair_ij x_ij.
+template <class T, int D>
+struct Row {
+  double x[D], v[D], gradient[D], density, pressure, own_pressure, twice_excess, convection, drag, rate_factor;
+  Lanes rate{}, force[D]{};
+
+  Row(const AcousticArguments& a, Index slot) {
+    const AcousticFields& melt = a.melt;
+    for (int c = 0; c < D; ++c) {
+      x[c] = melt.x[c][slot];
+      v[c] = melt.v[c][slot];
+      if (T::gradients) gradient[c] = melt.gradient[c][slot];
+    }
+    density = melt.density[slot];
+    pressure = melt.pressure[slot];
+    own_pressure = a.own_pressure * pressure;
+    twice_excess = 2 * melt.excess[slot];
+    rate_factor = T::diffusion ? -a.diffusion : a.continuity * density;
+    convection = T::diffusion ? a.continuity * density / rate_factor : 1;
+    drag = a.viscosity * density;
+  }
 };
 
 /// A piece of an octet of neighbours: continuity, density diffusion (melt only), pressure and artificial
 /// viscosity.
 template <class T, int D, bool Melt, class Kernel>
 [[gnu::always_inline]] inline void add_piece(const AcousticArguments& a, const AcousticFields& field,
-                                             const Kernel& kernel, Index j, const Row<D> (&row)[kRows],
-                                             Sums<D> (&sums)[kRows]) {
+                                             const Kernel& kernel, Index j, Row<T, D> (&row)[kRows]) {
   const double softening = 0.01 * a.smoothing * a.smoothing;
   const Vector<D> xj = load<D>(field.x, j), vj = load<D>(field.v, j);
   const Lanes volume = load(field.volume, j), pj = load(field.pressure, j);
 #pragma GCC unroll 2
-  for (Index n = 0; n < kRows; ++n) {
-    const Row<D>& i = row[n];
-    Sums<D>& s = sums[n];
+  for (Row<T, D>& i : row) {
     const Vector<D> d = separation<T::periodic, D>(a, i.x, xj);
-    const Lanes r2 = dot(d, d), r = sqrt(r2), f = kernel.f(r), vf = volume * f;
+    const Lanes r2 = dot(d, d), r = sqrt(r2), vf = volume * kernel.f(r);
     Vector<D> u;
     for (int c = 0; c < D; ++c) u.x[c] = i.v[c] - vj.x[c];
     const Lanes along = dot(u, d);
 
-    Lanes rate = a.continuity * i.density * along;
+    Lanes rate = along;
+    if constexpr (T::diffusion) rate *= i.convection;
     if constexpr (Melt && T::diffusion) {
-      Lanes jump = 2 * (load(field.excess, j) - i.excess);
-      for (int c = 0; c < D; ++c) jump += (load(field.gradient[c], j) + i.gradient[c]) * d.x[c];
-      rate -= a.diffusion * jump;
+      rate += 2 * load(field.excess, j) - i.twice_excess;
+      if constexpr (T::gradients)
+        for (int c = 0; c < D; ++c) rate += (load(field.gradient[c], j) + i.gradient[c]) * d.x[c];
     }
-    s.rate += vf * rate;
+    i.rate += vf * rate;
 
-    Lanes pair = a.own_pressure * i.pressure + pj;
+    Lanes pair = i.own_pressure + pj;
     if constexpr (T::stress) {
       const Lanes ratio = a.inverse_w * kernel.w(r), ratio2 = ratio * ratio;
       const Lanes pull = min(pj, Lanes(0)) + (i.pressure < 0 ? i.pressure : 0.0);
@@ -238,14 +250,14 @@ template <class T, int D, bool Melt, class Kernel>
       where(pull < 0, repulsion) = -a.stress_tension * pull;
       pair += ratio2 * ratio2 * repulsion;
     }
-    const Lanes pressure = vf * pair;
-    for (int c = 0; c < D; ++c) s.pressure[c] += pressure * d.x[c];
-
     if constexpr (T::viscosity) {
-      const Lanes drag = load(field.drag, j) * f * min(along, Lanes(0)) *
-                         inverse((0.5 * i.density + 0.5 * load(field.density, j)) * (r2 + softening));
-      for (int c = 0; c < D; ++c) s.viscous[c] += drag * d.x[c];
+      const Lanes density = load(field.density, j);
+      Lanes approach = density * min(along, Lanes(0));
+      if constexpr (!Melt) approach *= load(field.drag, j);
+      pair -= i.drag * approach * inverse((i.density + density) * (r2 + softening));
     }
+    const Lanes force = vf * pair;
+    for (int c = 0; c < D; ++c) i.force[c] += force * d.x[c];
   }
 }
 
@@ -253,30 +265,14 @@ template <int D, class Kernel, class T>
 void rates_of(const AcousticArguments& arguments, Index begin, Index end) {
   const AcousticArguments a = arguments;  // a copy, which no store can change
   const Kernel kernel(a.smoothing);
-  const AcousticFields& melt = a.melt;
   for (Index g = begin; g < end; ++g) {
-    Row<D> row[kRows];
-    Sums<D> sums[kRows]{};
+    Row<T, D> row[kRows] = {{a, g * kRows}, {a, g * kRows + 1}};
+    for_pieces(a.melt_melt, g, [&](Index j) { add_piece<T, D, true>(a, a.melt, kernel, j, row); });
+    for_pieces(a.melt_wall, g, [&](Index j) { add_piece<T, D, false>(a, a.wall, kernel, j, row); });
     for (Index n = 0; n < kRows; ++n) {
       const Index i = g * kRows + n;
-      for (int c = 0; c < D; ++c) {
-        row[n].x[c] = melt.x[c][i];
-        row[n].v[c] = melt.v[c][i];
-        row[n].gradient[c] = melt.gradient[c][i];
-      }
-      row[n].density = melt.density[i];
-      row[n].pressure = melt.pressure[i];
-      row[n].excess = melt.excess[i];
-    }
-    for_pieces(a.melt_melt, g, [&](Index j) { add_piece<T, D, true>(a, melt, kernel, j, row, sums); });
-    for_pieces(a.melt_wall, g, [&](Index j) { add_piece<T, D, false>(a, a.wall, kernel, j, row, sums); });
-    for (Index n = 0; n < kRows; ++n) {
-      const Index i = g * kRows + n;
-      a.density_rate[i] = sum(sums[n].rate);
-      for (int c = 0; c < D; ++c) {
-        a.pressure_force[c][i] = sum(sums[n].pressure[c]);
-        if (T::viscosity) a.viscous_force[c][i] = sum(sums[n].viscous[c]);
-      }
+      a.density_rate[i] = row[n].rate_factor * sum(row[n].rate);
+      for (int c = 0; c < D; ++c) a.force[c][i] = sum(row[n].force[c]);
     }
   }
 }
@@ -313,7 +309,7 @@ void excess_gradient(const AcousticArguments& a, Index begin, Index end) {
 template <int D, class Kernel>
 void rates(const AcousticArguments& a, Index begin, Index end) {
   with_terms([&](auto terms) { rates_of<D, Kernel, decltype(terms)>(a, begin, end); }, is_periodic(a),
-             a.diffusion > 0, a.viscous, a.inverse_w > 0);
+             a.diffusion > 0, a.gradients, a.viscosity > 0, a.inverse_w > 0);
 }
 
 template <int D, class Kernel>

@@ -11,15 +11,15 @@ namespace meltray::terms {
 /// Slots of an octet, and rows of a group: those of sph/clusters.hpp, which this header keeps away from.
 constexpr Index kOctetSlots = 8, kRowsOfGroup = 2;
 
-/// Fields of a cluster set, one entry per slot; empty slots have no volume and no drag and are far away.
+/// Fields of a cluster set, one entry per slot; empty slots have no volume and are far away.
 struct AcousticFields {
   const double *x[3], *v[3];
   const double* density;   ///< [kg/m^3]
   const double* volume;    ///< m / rho [m^3]
   const double* pressure;  ///< [Pa]
-  const double* drag;      ///< mass with which it takes part in artificial viscosity [kg]
+  const double* drag;      ///< 1 where it takes part in artificial viscosity, else 0; of walls only
   const double* excess;    ///< rho - rho_0(T) [kg/m^3]; of melt only
-  double* gradient[3];     ///< renormalised gradient of the excess [kg/m^4]; of melt only
+  double* gradient[3];     ///< renormalised gradient of the excess [kg/m^4]; of melt, with Antuono's diffusion
 };
 
 /// A ClusterList.
@@ -38,11 +38,12 @@ struct AcousticArguments {
   double own_pressure;                         ///< 1: sum form, -1: difference form
   double inverse_w;                            ///< 1 / W(dx) of artificial stress; 0: none
   double stress_tension, stress_pressure;      ///< its shares of a negative pressure, and of a positive sum
-  bool viscous;                                ///< with artificial viscosity
+  bool gradients;                              ///< Antuono's diffusion
+  double viscosity;                            ///< 2 alpha c h times the second moment; 0: none
   double gravity;                              ///< downwards [m/s^2]
-  double *density_rate, *pressure_force[3], *viscous_force[3];  ///< per slot of melt; see AcousticPass
-  double* moment[6];                                            ///< per slot of melt
-  double* wall_pressure;                                        ///< per slot of wall
+  double *density_rate, *force[3];             ///< per slot of melt; see AcousticPass
+  double* moment[6];                           ///< per slot of melt
+  double* wall_pressure;                       ///< per slot of wall
 };
 
 /// Loops over the groups of rows [begin, end).
@@ -52,7 +53,7 @@ struct AcousticKernel {
   void (*extrapolate)(const AcousticArguments&, Index begin, Index end);
   /// gradient (not renormalised yet) and moment of the melt.
   void (*excess_gradient)(const AcousticArguments&, Index begin, Index end);
-  /// density_rate, pressure_force and viscous_force.
+  /// density_rate, and the force of pressure and artificial viscosity.
   void (*rates)(const AcousticArguments&, Index begin, Index end);
 };
 

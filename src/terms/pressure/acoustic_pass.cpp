@@ -73,7 +73,7 @@ AcousticFields AcousticPass::Fields::view() {
   for (int c = 0; c < 3; ++c) {
     f.x[c] = x[c].data();
     f.v[c] = v[c].data();
-    f.gradient[c] = (gradient[c].empty() ? gradient[0] : gradient[c]).data();  // of zeros: one for all
+    f.gradient[c] = gradient[c].data();
   }
   f.density = density.data();
   f.volume = volume.data();
@@ -106,12 +106,12 @@ AcousticArguments AcousticPass::arguments(const Stage& s) {
     });
   a.stress_tension = kUnderTension;
   a.stress_pressure = force.form == GradientForm::sum ? kUnderPressure : 0.0;
-  a.viscous = artificial.alpha > 0;
+  a.gradients = diffusion.needs_gradients();
+  a.viscosity = 2 * artificial.alpha * state.sound_speed * k.smoothing * k.lattice.second_moment;
   a.gravity = state.gravity;
   a.density_rate = density_rate_.data();
   for (int c = 0; c < 3; ++c) {
-    a.pressure_force[c] = pressure_force_[c].data();
-    a.viscous_force[c] = viscous_force_[c].data();
+    a.force[c] = force_[c].data();
   }
   for (int m = 0; m < 6; ++m) a.moment[m] = moment_[m].data();
   a.wall_pressure = wall_.pressure.data();
@@ -149,23 +149,19 @@ void AcousticPass::find_pairs(Stage& s, double skin, const std::array<double, 3>
   density_rate_.resize(melt_.set.slots());
   melt_.set.close();
   wall_.set.close();
-  const bool viscous = artificial.alpha > 0, sloped = diffusion.needs_gradients();
+  const Index sloped = diffusion.needs_gradients() ? melt_.set.slots() : 0;
   for (int c = 0; c < k.dim; ++c) {
-    pressure_force_[c].assign(melt_.set.slots(), 0.0);
-    viscous_force_[c].assign(viscous ? melt_.set.slots() : 0, 0.0);
-    melt_.gradient[c].assign(c == 0 || sloped ? melt_.set.slots() : 0, 0.0);
+    force_[c].resize(melt_.set.slots());
+    melt_.gradient[c].resize(sloped);
   }
-  if (diffusion.needs_gradients())
-    for (int m = 0; m < symmetric_count(k.dim); ++m) moment_[m].resize(melt_.set.slots());
-  if (!viscous) return;
+  for (int m = 0; m < symmetric_count(k.dim); ++m) moment_[m].resize(sloped);
+  if (artificial.alpha == 0) return;
   // Slip walls take no part in artificial viscosity.
-  std::vector<double> drag(s.size());
-  parallel_for(s.size(), [&](Index i) {
+  wall_.drag.assign(wall_.set.slots(), 0.0);
+  for_particles(wall_.set, [&](Index slot, Index i) {
     const int wall = s.patch->wall[i];
-    drag[i] = wall && !k.faces[wall - 1].no_slip ? 0.0 : s.patch->mass[i];
+    wall_.drag[slot] = wall && !k.faces[wall - 1].no_slip ? 0.0 : 1.0;
   });
-  melt_.set.pack(drag, 0, melt_.drag);
-  wall_.set.pack(drag, 0, wall_.drag);
 }
 
 void AcousticPass::gather(Stage& s) {
@@ -203,19 +199,11 @@ void AcousticPass::add_density_rate(const Stage& s, double* density_rate) const 
   });
 }
 
-void AcousticPass::add_pressure_force(const Stage& s, const MutField& acceleration) const {
+void AcousticPass::add_force(const Stage& s, const MutField& acceleration) const {
   const double scale = 1 / s.constants->lattice.second_moment;
   for_particles(melt_.set, [&](Index slot, Index i) {
     const double factor = scale * s.volume[i] / s.patch->mass[i];
-    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] -= factor * pressure_force_[c][slot];
-  });
-}
-
-void AcousticPass::add_artificial_viscosity(const Stage& s, const MutField& acceleration) const {
-  if (artificial.alpha == 0) return;
-  const double strength = artificial.alpha * state.sound_speed * s.constants->smoothing;
-  for_particles(melt_.set, [&](Index slot, Index i) {
-    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] += strength * viscous_force_[c][slot];
+    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] -= factor * force_[c][slot];
   });
 }
 
@@ -225,7 +213,7 @@ void AcousticPass::release() {
   wall_ = {};
   melt_melt_ = melt_wall_ = wall_melt_ = {};
   density_rate_ = {};
-  for (int c = 0; c < 3; ++c) pressure_force_[c] = viscous_force_[c] = {};
+  for (auto& f : force_) f = {};
   for (auto& m : moment_) m = {};
 }
 
@@ -241,7 +229,7 @@ std::size_t AcousticPass::bytes() const {
     for (int c = 0; c < 3; ++c)
       doubles += f->x[c].capacity() + f->v[c].capacity() + f->gradient[c].capacity();
   }
-  for (int c = 0; c < 3; ++c) doubles += pressure_force_[c].capacity() + viscous_force_[c].capacity();
+  for (const auto& f : force_) doubles += f.capacity();
   for (const auto& m : moment_) doubles += m.capacity();
   return doubles * sizeof(double) + kind_.capacity() + melt_.set.bytes() + wall_.set.bytes() +
          melt_melt_.bytes() + melt_wall_.bytes() + wall_melt_.bytes();

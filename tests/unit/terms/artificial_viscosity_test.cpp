@@ -25,7 +25,7 @@ struct Liquid : StageSetup {
     pass.artificial.alpha = kAlpha;
     evaluate(pass);
     Components a = zeros();
-    pass.add_artificial_viscosity(stage, view(a));
+    pass.add_force(stage, view(a));
     return a;
   }
 };

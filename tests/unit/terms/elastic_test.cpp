@@ -230,7 +230,7 @@ TEST_CASE("what the melt does to the solid, the solid does to the melt") {
   b.evaluate(pass);
   const auto r = b.rates(metal());
   Components melt = b.zeros();
-  pass.add_pressure_force(b.stage, view(melt));
+  pass.add_force(b.stage, view(melt));
   Vec3 on_solid = Vec3::Zero(), on_melt = Vec3::Zero();
   for (Index i = 0; i < b.patch.size(); ++i) {
     on_solid += b.patch.mass[i] * b.vector(r.acceleration, i);

@@ -46,7 +46,7 @@ struct Block : StageSetup {
   Components pressure_force(AcousticPass& pass) {
     evaluate(pass);
     Components a = zeros();
-    pass.add_pressure_force(stage, view(a));
+    pass.add_force(stage, view(a));
     return a;
   }
   Components pressure_force(const EquationOfState& eos, GradientForm form) {

@@ -30,8 +30,8 @@ class AcousticPass {
   /// The sums over pairs; add_... hand them out.
   void evaluate(const Stage& stage);
   void add_density_rate(const Stage& stage, double* density_rate) const;
-  void add_pressure_force(const Stage& stage, const MutField& acceleration) const;
-  void add_artificial_viscosity(const Stage& stage, const MutField& acceleration) const;
+  /// Pressure and artificial viscosity.
+  void add_force(const Stage& stage, const MutField& acceleration) const;
 
   /// Gives back the lists and fields of find_pairs().
   void release();
@@ -53,7 +53,7 @@ class AcousticPass {
   std::vector<std::uint8_t> kind_;
   Fields melt_, wall_;
   sph::ClusterList melt_melt_, melt_wall_, wall_melt_;
-  AlignedDoubles density_rate_, pressure_force_[3], viscous_force_[3], moment_[6];
+  AlignedDoubles density_rate_, force_[3], moment_[6];
 };
 
 }  // namespace meltray::terms
