@@ -162,17 +162,19 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
   const std::size_t nm = flows() ? stage.moving.size() : 0, nh = stage.heated.size();
   const int dim = constants_.dim;
   y.resize(crossings_begin() + terms::Crossings::kCount);
-  for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < nm; ++k) {
-      y[c * nm + k] = patch.x[c][stage.moving[k]];
-      y[(dim + c) * nm + k] = patch.v[c][stage.moving[k]];
-    }
   const std::size_t h = enthalpy_begin();
-  if (weakly_compressible())
-    for (std::size_t k = 0; k < nm; ++k) y[2 * dim * nm + k] = patch.density[stage.moving[k]];
-  for (std::size_t k = 0; k < nh; ++k) y[h + k] = patch.h[stage.heated[k]];
+  parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
+    const Index i = stage.moving[k];
+    for (int c = 0; c < dim; ++c) {
+      y[c * nm + k] = patch.x[c][i];
+      y[(dim + c) * nm + k] = patch.v[c][i];
+    }
+    if (weakly_compressible()) y[2 * dim * nm + k] = patch.density[i];
+  });
+  parallel_for(static_cast<std::ptrdiff_t>(nh), [&](std::ptrdiff_t k) { y[h + k] = patch.h[stage.heated[k]]; });
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
   if (has_elastic_solid()) pack_elastic(y);
+  packed_ = y.data();
 
   const Time& time = scene_.time;
   fields.clear();
@@ -189,20 +191,17 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
 }
 
 void Model::unpack(const double* y) {
+  if (y != packed_) packed_ = nullptr;
   const std::size_t nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
-  for (int c = 0; c < dim; ++c) {
-    const double *const x = y + c * nm, *const v = y + (dim + c) * nm;
-    parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
-      patch.x[c][stage.moving[k]] = x[k];
-      patch.v[c][stage.moving[k]] = v[k];
-    });
-  }
-  if (weakly_compressible()) {
-    const double* const rho = y + 2 * dim * nm;
-    parallel_for(static_cast<std::ptrdiff_t>(nm),
-                 [&](std::ptrdiff_t k) { patch.density[stage.moving[k]] = rho[k]; });
-  }
+  parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
+    const Index i = stage.moving[k];
+    for (int c = 0; c < dim; ++c) {
+      patch.x[c][i] = y[c * nm + k];
+      patch.v[c][i] = y[(dim + c) * nm + k];
+    }
+    if (weakly_compressible()) patch.density[i] = y[2 * dim * nm + k];
+  });
   const double* const h = y + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { patch.h[stage.heated[k]] = h[k]; });
@@ -268,8 +267,9 @@ bool Model::holds_rest(const double* y) const {
 }
 
 void Model::evaluate(double t, const double* y) {
-  const bool still = holds_positions(y), same_h = holds(patch.h, stage.heated, y + enthalpy_begin());
-  if (still && same_h && holds_rest(y) && t == stage.t) return;
+  const bool same = y == packed_, still = same || holds_positions(y),
+             same_h = same || holds(patch.h, stage.heated, y + enthalpy_begin());
+  if (still && same_h && (same || holds_rest(y)) && t == stage.t) return;
   stage.t = t;
   unpack(y);
   if (!same_h)
@@ -327,21 +327,15 @@ terms::Rates Model::cleared_rates() {
 void Model::finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport) {
   const std::size_t nm = flows() ? stage.moving.size() : 0;
   const int dim = constants_.dim;
-  for (int c = 0; c < dim; ++c) {
-    const double* const v = y + (dim + c) * nm;
-    double *const dx = rate + c * nm, *const dv = rate + (dim + c) * nm;
-    const bool shifted = transport && shifting_.coefficient > 0;
-    parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
-      const Index i = stage.moving[k];
-      dx[k] = transport ? v[k] + (shifted ? transport_[c][i] : 0.0) : 0.0;
-      dv[k] = acceleration_[c][i];
-    });
-  }
-  if (weakly_compressible()) {
-    double* const drho = rate + 2 * dim * nm;
-    parallel_for(static_cast<std::ptrdiff_t>(nm),
-                 [&](std::ptrdiff_t k) { drho[k] = transport ? density_rate_[stage.moving[k]] : 0.0; });
-  }
+  const bool shifted = transport && shifting_.coefficient > 0;
+  parallel_for(static_cast<std::ptrdiff_t>(nm), [&](std::ptrdiff_t k) {
+    const Index i = stage.moving[k];
+    for (int c = 0; c < dim; ++c) {
+      rate[c * nm + k] = transport ? y[(dim + c) * nm + k] + (shifted ? transport_[c][i] : 0.0) : 0.0;
+      rate[(dim + c) * nm + k] = acceleration_[c][i];
+    }
+    if (weakly_compressible()) rate[2 * dim * nm + k] = transport ? density_rate_[i] : 0.0;
+  });
   double* const dh = rate + enthalpy_begin();
   parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
                [&](std::ptrdiff_t k) { dh[k] = heating_[stage.heated[k]]; });

@@ -171,6 +171,7 @@ class Model : public OdeProblem {
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;
   std::vector<double> guess_, solve_h_b_, solve_h_x_;
+  const double* packed_ = nullptr;  ///< the state that the patch holds, if it is that of the last pack()
   bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false,
        marangoni_valid_ = false;
 };

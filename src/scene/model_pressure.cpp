@@ -105,15 +105,17 @@ std::string Model::blame(Index i, double dt) {
     });
   update_surface_pressure();
   if (weakly_compressible()) {
+    density_rate_.resize(stage.size());
     const double alpha = std::exchange(acoustic_->artificial.alpha, 0.0);
     acoustic_->evaluate(stage);
-    pull("pressure", [&](auto& a) { acoustic_->add_force(stage, a); });
+    pull("pressure", [&](auto& a) { acoustic_->add_rates(stage, density_rate_.data(), a); });
     if (needs_surface())
       pull("surface force", [&](auto& a) { acoustic_->force.add_surface_force(stage, a); });
     acoustic_->artificial.alpha = alpha;
     acoustic_->evaluate(stage);
     if (alpha > 0)
-      pull("pressure with artificial viscosity", [&](auto& a) { acoustic_->add_force(stage, a); });
+      pull("pressure with artificial viscosity",
+           [&](auto& a) { acoustic_->add_rates(stage, density_rate_.data(), a); });
   } else {
     projection.assemble(stage);
   }

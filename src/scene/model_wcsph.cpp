@@ -55,8 +55,7 @@ void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings)
   density_rate_.assign(stage.size(), 0.0);
   rates.density = density_rate_.data();
   acoustic_->evaluate(stage);
-  acoustic_->add_density_rate(stage, rates.density);
-  acoustic_->add_force(stage, rates.acceleration);
+  acoustic_->add_rates(stage, rates.density, rates.acceleration);
   if (needs_surface()) acoustic_->force.add_surface_force(stage, rates.acceleration);
   crossings.pressure = force_gained();
   if (has_elastic_solid()) add_elastic_rates(rates);

@@ -197,7 +197,8 @@ struct Terms {
 /// d rho/dt = rate_factor sum_j V_j F_ij rate_ij, force = sum_j V_j F_ij pair_ij x_ij.
 template <class T, int D>
 struct Row {
-  double x[D], v[D], gradient[D], density, pressure, own_pressure, twice_excess, convection, drag, rate_factor;
+  double x[D], v[D], gradient[D], density, pressure, own_pressure, twice_excess, convection, rate_factor;
+  double drag[2];  ///< (rho_i + rho_j) / (viscosity rho_i) = drag[0] + drag[1] rho_j
   Lanes rate{}, force[D]{};
 
   Row(const AcousticArguments& a, Index slot) {
@@ -213,7 +214,8 @@ struct Row {
     twice_excess = 2 * melt.excess[slot];
     rate_factor = T::diffusion ? -a.diffusion : a.continuity * density;
     convection = T::diffusion ? a.continuity * density / rate_factor : 1;
-    drag = a.viscosity * density;
+    if (T::viscosity) drag[1] = 1 / (a.viscosity * density);
+    if (T::viscosity) drag[0] = drag[1] * density;
   }
 };
 
@@ -254,7 +256,7 @@ template <class T, int D, bool Melt, class Kernel>
       const Lanes density = load(field.density, j);
       Lanes approach = density * min(along, Lanes(0));
       if constexpr (!Melt) approach *= load(field.drag, j);
-      pair -= i.drag * approach * inverse((i.density + density) * (r2 + softening));
+      pair -= approach * inverse((i.drag[0] + i.drag[1] * density) * (r2 + softening));
     }
     const Lanes force = vf * pair;
     for (int c = 0; c < D; ++c) i.force[c] += force * d.x[c];

@@ -59,13 +59,23 @@ void renormalise(Index slots, const AlignedDoubles (&moments)[6], AlignedDoubles
 
 void AcousticPass::Fields::pack(const Stage& s) {
   const Patch& p = *s.patch;
-  for (int c = 0; c < s.constants->dim; ++c) {
-    set.pack(p.x[c], sph::kNowhere, x[c]);
-    set.pack(p.v[c], 0, v[c]);
+  const int dim = s.constants->dim;
+  const Index slots = set.slots();
+  for (int c = 0; c < dim; ++c) {
+    x[c].resize(slots);
+    v[c].resize(slots);
   }
-  set.pack(p.density, s.constants->density, density);
-  set.pack(s.volume, 0, volume);
-  set.pack(p.pressure, 0, pressure);
+  for (auto* field : {&density, &volume, &pressure}) field->resize(slots);
+  parallel_for(slots, [&](Index slot) {
+    const Index i = set.particle()[slot];
+    for (int c = 0; c < dim; ++c) {
+      x[c][slot] = i < 0 ? sph::kNowhere : p.x[c][i];
+      v[c][slot] = i < 0 ? 0 : p.v[c][i];
+    }
+    density[slot] = i < 0 ? s.constants->density : p.density[i];
+    volume[slot] = i < 0 ? 0 : s.volume[i];
+    pressure[slot] = i < 0 ? 0 : p.pressure[i];
+  });
 }
 
 AcousticFields AcousticPass::Fields::view() {
@@ -187,23 +197,21 @@ void AcousticPass::evaluate(const Stage& s) {
   run(kernel.rates, a, melt_.set.groups());
 }
 
-void AcousticPass::add_density_rate(const Stage& s, double* density_rate) const {
-  const double relax = state.sound_speed / s.constants->smoothing;
+void AcousticPass::add_rates(const Stage& s, double* density_rate, const MutField& acceleration) const {
+  const Patch& p = *s.patch;
+  const int dim = s.constants->dim;
+  const double relax = state.sound_speed / s.constants->smoothing,
+               scale = 1 / s.constants->lattice.second_moment;
   for_particles(melt_.set, [&](Index slot, Index i) {
-    density_rate[i] += density_rate_[slot];
-    const double thinnest = -state.tear * (s.patch->density[i] - s.excess[i]);
+    double rate = density_rate_[slot];
+    const double thinnest = -state.tear * (p.density[i] - s.excess[i]);
     if (s.loose[i])
-      density_rate[i] -= s.excess[i] * relax;
+      rate -= s.excess[i] * relax;
     else if (s.excess[i] < thinnest)
-      density_rate[i] -= (s.excess[i] - thinnest) * relax;
-  });
-}
-
-void AcousticPass::add_force(const Stage& s, const MutField& acceleration) const {
-  const double scale = 1 / s.constants->lattice.second_moment;
-  for_particles(melt_.set, [&](Index slot, Index i) {
-    const double factor = scale * s.volume[i] / s.patch->mass[i];
-    for (int c = 0; c < s.constants->dim; ++c) acceleration[c][i] -= factor * force_[c][slot];
+      rate -= (s.excess[i] - thinnest) * relax;
+    density_rate[i] += rate;
+    const double factor = scale * s.volume[i] / p.mass[i];
+    for (int c = 0; c < dim; ++c) acceleration[c][i] -= factor * force_[c][slot];
   });
 }
 

@@ -127,8 +127,7 @@ void compare(sph::KernelType kernel, bool periodic, const AcousticPass& terms) {
   b.evaluate(pass);
   std::vector<double> rate(b.patch.size(), 0.0);
   Components force = b.zeros();
-  pass.add_density_rate(b.stage, rate.data());
-  pass.add_force(b.stage, view(force));
+  pass.add_rates(b.stage, rate.data(), view(force));
   const auto expected = kernel == sph::KernelType::wendland_c2 ? plain_sums<D, sph::WendlandC2<D>>(b, pass)
                                                                : plain_sums<D, sph::CubicSpline<D>>(b, pass);
   Sums most;
@@ -174,7 +173,8 @@ TEST_CASE("acoustic pass: terms that are off add nothing", "[acoustic]") {
   none.diffusion = {DiffusionForm::antuono, 0};
   b.evaluate(none);
   std::vector<double> with(b.patch.size(), 0.0), without = with;
-  pass.add_density_rate(b.stage, with.data());
-  none.add_density_rate(b.stage, without.data());
+  Components force = b.zeros();
+  pass.add_rates(b.stage, with.data(), view(force));
+  none.add_rates(b.stage, without.data(), view(force));
   CHECK(with == without);
 }

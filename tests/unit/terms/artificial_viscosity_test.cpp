@@ -25,7 +25,8 @@ struct Liquid : StageSetup {
     pass.artificial.alpha = kAlpha;
     evaluate(pass);
     Components a = zeros();
-    pass.add_force(stage, view(a));
+    std::vector<double> rate(patch.size());
+    pass.add_rates(stage, rate.data(), view(a));
     return a;
   }
 };

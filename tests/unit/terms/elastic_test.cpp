@@ -230,7 +230,8 @@ TEST_CASE("what the melt does to the solid, the solid does to the melt") {
   b.evaluate(pass);
   const auto r = b.rates(metal());
   Components melt = b.zeros();
-  pass.add_force(b.stage, view(melt));
+  std::vector<double> rate(b.patch.size());
+  pass.add_rates(b.stage, rate.data(), view(melt));
   Vec3 on_solid = Vec3::Zero(), on_melt = Vec3::Zero();
   for (Index i = 0; i < b.patch.size(); ++i) {
     on_solid += b.patch.mass[i] * b.vector(r.acceleration, i);

@@ -39,14 +39,16 @@ struct Block : StageSetup {
   std::vector<double> density_rate(AcousticPass& pass) {
     evaluate(pass);
     std::vector<double> rate(patch.size(), 0.0);
-    pass.add_density_rate(stage, rate.data());
+    Components force = zeros();
+    pass.add_rates(stage, rate.data(), view(force));
     return rate;
   }
   /// Of the sum over pairs alone.
   Components pressure_force(AcousticPass& pass) {
     evaluate(pass);
     Components a = zeros();
-    pass.add_force(stage, view(a));
+    std::vector<double> rate(patch.size());
+    pass.add_rates(stage, rate.data(), view(a));
     return a;
   }
   Components pressure_force(const EquationOfState& eos, GradientForm form) {

@@ -27,11 +27,10 @@ class AcousticPass {
   /// Takes positions, velocities and what `state` has made of the densities, for evaluate(), and gives the
   /// walls their pressures.
   void gather(Stage& stage);
-  /// The sums over pairs; add_... hand them out.
+  /// The sums over pairs; add_rates() hands them out.
   void evaluate(const Stage& stage);
-  void add_density_rate(const Stage& stage, double* density_rate) const;
-  /// Pressure and artificial viscosity.
-  void add_force(const Stage& stage, const MutField& acceleration) const;
+  /// Adds the rate of the density [kg/m^3/s] and the acceleration by pressure and artificial viscosity.
+  void add_rates(const Stage& stage, double* density_rate, const MutField& acceleration) const;
 
   /// Gives back the lists and fields of find_pairs().
   void release();
