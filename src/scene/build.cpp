@@ -62,6 +62,7 @@ Vec3 initial_velocity(const Domain& domain, const Body& body, const Vec3& x) {
 }
 
 /// Calls f(point, site number) for the sites of a lattice over the box, turned by fixed angles if asked for.
+/// Those above one another follow one another, as in the cells of the grid.
 template <class F>
 void for_sites(const Domain& domain, F&& f) {
   const int dim = domain.dimension;
@@ -69,16 +70,15 @@ void for_sites(const Domain& domain, F&& f) {
   if (domain.arrangement != Arrangement::rotated) {
     std::array<std::int64_t, 3> count{1, 1, 1};
     for (int c = 0; c < dim; ++c) count[c] = std::llround((domain.max[c] - domain.min[c]) / dx);
-    std::uint64_t site = 0;
-    for (std::int64_t k = 0; k < count[2]; ++k)
+    for (std::int64_t i = 0; i < count[0]; ++i)
       for (std::int64_t j = 0; j < count[1]; ++j)
-        for (std::int64_t i = 0; i < count[0]; ++i) {
+        for (std::int64_t k = 0; k < count[2]; ++k) {
           const std::array<std::int64_t, 3> n{i, j, k};
           Vec3 x = Vec3::Zero();
           // Spread evenly where the length is no multiple of the spacing.
           for (int c = 0; c < dim; ++c)
             x[c] = domain.min[c] + (n[c] + 0.5) * (domain.max[c] - domain.min[c]) / count[c];
-          f(x, site++);
+          f(x, (k * count[1] + j) * count[0] + i);
         }
     return;
   }

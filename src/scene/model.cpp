@@ -318,8 +318,8 @@ void Model::update_surface_pressure() {
 
 terms::Rates Model::cleared_rates() {
   const Index n = stage.size();
-  for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(n, 0.0);
-  heating_.assign(stage.heated.empty() ? 0 : n, 0.0);
+  for (int c = 0; c < constants_.dim; ++c) clear(acceleration_[c], n);
+  clear(heating_, stage.heated.empty() ? 0 : n);
   counted_force_ = Vec3::Zero();
   return {view(acceleration_), heating_.data()};
 }
@@ -379,7 +379,7 @@ void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
 /// Where the surface stands still within a step, so does the force along it.
 void Model::add_frozen_marangoni(const MutField& acceleration) {
   if (!marangoni_valid_) {
-    for (int c = 0; c < constants_.dim; ++c) along_surface_[c].assign(stage.size(), 0.0);
+    for (int c = 0; c < constants_.dim; ++c) clear(along_surface_[c], stage.size());
     marangoni_.add_acceleration(stage, view(along_surface_));
     marangoni_valid_ = true;
   }
@@ -436,7 +436,7 @@ void Model::explicit_rate(double t, const double* y, double* rate) {
     add_forces(rates, false, crossings);
     if (shifting_.coefficient > 0) {
       const auto timer = timers_.measure(Part::forces);
-      for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
+      for (int c = 0; c < constants_.dim; ++c) clear(transport_[c], stage.size());
       shifting_.add_rates(stage, view(transport_), rates.acceleration);
       crossings.shifting = force_gained();
     }

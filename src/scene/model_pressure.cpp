@@ -35,7 +35,7 @@ void Model::project(double dt) {
   for (Index r = 0; r < projection.rows(); ++r) source_[r] = (source_[r] - relax * other_[r]) / dt;
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
 
-  for (int c = 0; c < constants_.dim; ++c) acceleration_[c].assign(stage.size(), 0.0);
+  for (int c = 0; c < constants_.dim; ++c) clear(acceleration_[c], stage.size());
   projection.add_acceleration(stage, projection_options_.entry, view(acceleration_));
   const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
   pressure_impulse = dt * total_force();
@@ -100,7 +100,7 @@ std::string Model::blame(Index i, double dt) {
   if (scene_.terms.marangoni) pull("marangoni", [&](auto& a) { marangoni_.add_acceleration(stage, a); });
   if (shifting_.coefficient > 0)
     pull("shifting", [&](auto& a) {
-      for (int c = 0; c < constants_.dim; ++c) transport_[c].assign(stage.size(), 0.0);
+      for (int c = 0; c < constants_.dim; ++c) clear(transport_[c], stage.size());
       shifting_.add_rates(stage, view(transport_), a);
     });
   update_surface_pressure();

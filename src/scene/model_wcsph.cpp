@@ -52,7 +52,7 @@ void Model::find_pairs(double skin, const std::array<double, 3>& period) {
 
 void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings) {
   const auto timer = timers_.measure(Part::pressure);
-  density_rate_.assign(stage.size(), 0.0);
+  clear(density_rate_, stage.size());
   rates.density = density_rate_.data();
   acoustic_->evaluate(stage);
   acoustic_->add_rates(stage, rates.density, rates.acceleration);

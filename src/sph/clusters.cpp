@@ -27,7 +27,7 @@ Index ClusterSet::column_of(const std::array<double, 3>& x) const {
   Index k[2] = {0, 0};
   for (int c = 0; c < dim_ - 1; ++c)
     k[c] = std::clamp(static_cast<Index>((x[c] - origin_[c]) * inverse_width_[c]), Index{0}, columns_[c] - 1);
-  return k[1] * columns_[0] + k[0];
+  return k[0] * columns_[1] + k[1];  // in the order of the grid's cells
 }
 
 void ClusterSet::sort(const Patch& patch, const std::vector<std::uint8_t>& chosen, std::uint8_t kind,
@@ -166,7 +166,7 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
     }
     for (Index b = low[1]; b <= high[1]; ++b)
       for (Index a = low[0]; a <= high[0]; ++a) {
-        const Index column = b * sources.columns_[0] + a;
+        const Index column = a * sources.columns_[1] + b;
         const auto end = sources.box_.begin() + sources.column_start_[column + 1];
         auto source = std::partition_point(sources.box_.begin() + sources.column_start_[column], end,
                                            [&](const auto& s) { return s.max[up] < box.min[up]; });

@@ -274,7 +274,7 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
     parallel_for(static_cast<std::ptrdiff_t>(some->size()),
                  [&](std::ptrdiff_t n) { refresh_row((*some)[n]); });
   else
-    parallel_for(rows(), refresh_row);
+    parallel_for_uneven(rows(), refresh_row);
 }
 
 std::size_t PairList::bytes() const {

@@ -36,7 +36,7 @@ void Marangoni::add_acceleration(const Stage& s, const MutField& acceleration) c
     using Vector = Eigen::Matrix<double, D, 1>;
     const double rho = s.constants->density;
     const double *const volume = s.volume.data(), *const temperature = s.temperature.data();
-    parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
+    parallel_for_uneven(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       if (s.loose[i]) return;
       const double slope = s.constants->material.sigma_slope(s.temperature[i]);

@@ -14,6 +14,7 @@
 #include "time/explicit_driver.hpp"
 #include "time/multirate_driver.hpp"
 #include "time/step_control.hpp"
+#include "time/sweep.hpp"
 
 namespace meltray {
 
@@ -209,8 +210,9 @@ StepReport Integrator::Impl::step(OdeProblem& problem, std::span<const StateFiel
   ++counters.steps;
   if (options.fixed_step == 0)
     control.accept(report.dt, wanted.length, report.error, exponent, report.rejected);
-  const double* result = integration::entries(y_new.get());
-  std::copy(result, result + y.size(), y.begin());
+  const double* const result = integration::entries(y_new.get());
+  double* const state = y.data();
+  integration::sweep(y.size(), [=](std::ptrdiff_t i) { state[i] = result[i]; });
   return report;
 }
 

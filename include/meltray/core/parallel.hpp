@@ -21,15 +21,35 @@ inline int threads() {
 inline constexpr std::ptrdiff_t kSerialBelow = 512;
 
 /// Calls f(i) for i in [0, n). f writes only to places owned by i, so the result is the same with any number
-/// of threads.
+/// of threads. A thread takes consecutive items, here as in every loop, so that what it wrote is still in its
+/// own cache when it reads it.
 template <class F>
 void parallel_for(std::ptrdiff_t n, F&& f) {
   if (n < kSerialBelow) {
     for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
     return;
   }
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+}
+
+/// The same where the cost of an item depends on its place, as rows of a patch do: many for melt, none for what
+/// rests. Threads take turns.
+template <class F>
+void parallel_for_uneven(std::ptrdiff_t n, F&& f) {
+  if (n < kSerialBelow) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+    return;
+  }
 #pragma omp parallel for schedule(static, 64)
   for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+}
+
+/// n zeros in a field, set by the threads that will add to them.
+inline void clear(std::vector<double>& field, std::ptrdiff_t n) {
+  field.resize(static_cast<std::size_t>(n));
+  double* const f = field.data();
+  parallel_for(n, [=](std::ptrdiff_t i) { f[i] = 0; });
 }
 
 /// Reductions run over fixed blocks of items that are combined in order: bitwise independent of the number of

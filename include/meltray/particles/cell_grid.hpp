@@ -35,9 +35,10 @@ class CellGrid {
     return k;
   }
   Index cell(const ConstField& x, std::size_t i) const { return flat(coordinates(x, i)); }
-  Index flat(const std::array<Index, 3>& k) const { return (k[2] * count_[1] + k[1]) * count_[0] + k[0]; }
+  /// Cells above one another follow one another, as particles do in columns of clusters (sph/clusters.hpp).
+  Index flat(const std::array<Index, 3>& k) const { return (k[0] * count_[1] + k[1]) * count_[2] + k[2]; }
   std::array<Index, 3> unflatten(Index cell) const {
-    return {cell % count_[0], (cell / count_[0]) % count_[1], cell / (count_[0] * count_[1])};
+    return {cell / (count_[1] * count_[2]), (cell / count_[2]) % count_[1], cell % count_[2]};
   }
 
   /// Calls f(cell) for the cells within `reach` cells of `centre` (itself included), each once.
@@ -56,9 +57,9 @@ class CellGrid {
         high[c] = count_[c] - 1;
       }
     }
-    for (Index z = low[2]; z <= high[2]; ++z)
+    for (Index x = low[0]; x <= high[0]; ++x)
       for (Index y = low[1]; y <= high[1]; ++y)
-        for (Index x = low[0]; x <= high[0]; ++x) f(flat({wrap(0, x), wrap(1, y), wrap(2, z)}));
+        for (Index z = low[2]; z <= high[2]; ++z) f(flat({wrap(0, x), wrap(1, y), wrap(2, z)}));
   }
 
   /// Squared distance of a box from a cell [m^2]. The outermost cells go on to infinity, as they hold what is
@@ -85,9 +86,9 @@ class CellGrid {
       low[c] = coordinate(c, min[c]);
       high[c] = coordinate(c, max[c]);
     }
-    for (Index z = low[2]; z <= high[2]; ++z)
+    for (Index x = low[0]; x <= high[0]; ++x)
       for (Index y = low[1]; y <= high[1]; ++y)
-        for (Index x = low[0]; x <= high[0]; ++x) f(flat({x, y, z}));
+        for (Index z = low[2]; z <= high[2]; ++z) f(flat({x, y, z}));
   }
 
  private:

@@ -27,7 +27,7 @@ using Loop = void (*)(const AcousticArguments&, Index, Index);
 
 void run(Loop loop, const AcousticArguments& a, Index groups) {
   const Index blocks = (groups + kGroupsPerBlock - 1) / kGroupsPerBlock;
-#pragma omp parallel for schedule(dynamic, 1) if (blocks > 4)
+#pragma omp parallel for schedule(static) if (blocks > 4)
   for (Index b = 0; b < blocks; ++b)
     loop(a, b * kGroupsPerBlock, std::min(groups, (b + 1) * kGroupsPerBlock));
 }
