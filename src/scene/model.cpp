@@ -171,7 +171,8 @@ void Model::pack(std::vector<double>& y, std::vector<StateField>& fields) {
     }
     if (weakly_compressible()) y[2 * dim * nm + k] = patch.density[i];
   });
-  parallel_for(static_cast<std::ptrdiff_t>(nh), [&](std::ptrdiff_t k) { y[h + k] = patch.h[stage.heated[k]]; });
+  parallel_for(static_cast<std::ptrdiff_t>(nh),
+               [&](std::ptrdiff_t k) { y[h + k] = patch.h[stage.heated[k]]; });
   std::fill(y.begin() + crossings_begin(), y.end(), 0.0);
   if (has_elastic_solid()) pack_elastic(y);
   packed_ = y.data();
@@ -345,13 +346,18 @@ void Model::finish_rates(const double* y, double* rate, const terms::Crossings& 
 
 /// Sum of m a over the moving particles for the accelerations gathered so far [N].
 Vec3 Model::total_force() const {
-  Vec3 sum = Vec3::Zero();
-  for (int c = 0; c < constants_.dim; ++c)
-    sum[c] = parallel_sum_rows(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
-      const Index i = stage.moving[k];
-      return patch.mass[i] * acceleration_[c][i];
-    });
-  return sum;
+  const int dim = constants_.dim;
+  return parallel_reduce(
+      static_cast<std::ptrdiff_t>(stage.moving.size()), Vec3(Vec3::Zero()),
+      [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        Vec3 sum = Vec3::Zero();
+        for (std::ptrdiff_t k = begin; k < end; ++k) {
+          const Index i = stage.moving[k];
+          for (int c = 0; c < dim; ++c) sum[c] += patch.mass[i] * acceleration_[c][i];
+        }
+        return sum;
+      },
+      [](const Vec3& a, const Vec3& b) { return Vec3(a + b); }, kRows);
 }
 
 /// What has been added to the total force since the last call [N].

@@ -41,14 +41,13 @@ bool ExplicitDriver::rate(double t, N_Vector y, N_Vector f) {
 
 /// y_new = y + h sum_r a[r] f_r over the first stages.
 void ExplicitDriver::add_row(double h, const double* a, int stages, N_Vector y_new) {
-  coefficient_.clear();
-  term_.clear();
+  coefficient_.assign(1, 1.0);
+  term_.assign(1, y_);
   for (int r = 0; r < stages; ++r) {
     coefficient_.push_back(h * a[r]);
     term_.push_back(rates_[r].get());
   }
-  N_VLinearCombination(stages, coefficient_.data(), term_.data(), y_new);
-  N_VLinearSum(1.0, y_, 1.0, y_new, y_new);
+  N_VLinearCombination(stages + 1, coefficient_.data(), term_.data(), y_new);
 }
 
 /// Norm of the error estimate of a step whose state has been found. It takes the place of the last stage's
@@ -75,13 +74,7 @@ Attempt ExplicitDriver::advance(double h, N_Vector y_new) {
     add_row(h, table_.A[s], s, y_new);
     if (!rate(t_ + table_.c[s] * h, y_new, rates_[s].get())) return {Outcome::not_finite};
   }
-  coefficient_.assign(1, 1.0);
-  term_.assign(1, y_);
-  for (int s = 0; s < table_.stages; ++s) {
-    coefficient_.push_back(h * table_.b[s]);
-    term_.push_back(rates_[s].get());
-  }
-  N_VLinearCombination(table_.stages + 1, coefficient_.data(), term_.data(), y_new);
+  add_row(h, table_.b, table_.stages, y_new);
 
   Attempt a;
   if (estimate_error_) a.error = error(h);

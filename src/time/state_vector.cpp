@@ -2,9 +2,12 @@
 #include "time/state_vector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "meltray/core/parallel.hpp"
 #include "time/sweep.hpp"
@@ -93,28 +96,63 @@ struct VectorOps {
   }
   static double weighted_rms(N_Vector vx, N_Vector vw) { return space(vx).norm()(data(vx), data(vw)); }
 
-  /// z = sum c_k x_k in one pass with the partial sums in cache. z may be any of the x. Butcher tables are
-  /// full of zeros: such terms are left out.
-  static int combine(int count, double* c, N_Vector* vx, N_Vector vz) {
+  /// z = sum c_k x_k over a number of terms that the compiler knows.
+  template <std::size_t... K>
+  static void combine_few(const double* c, const double* const* x, N_Vector vz, std::index_sequence<K...>) {
+    double* z = data(vz);
+    const std::array<double, sizeof...(K)> factor{c[K]...};
+    const std::array<const double*, sizeof...(K)> from{x[K]...};
+    sweep(size(vz), [=](std::ptrdiff_t i) { z[i] = (0.0 + ... + (factor[K] * from[K][i])); });
+  }
+
+  /// The same for any number, in one pass with the partial sums in cache.
+  static void combine_many(const std::vector<double>& c, const std::vector<const double*>& x, N_Vector vz) {
     constexpr std::ptrdiff_t kChunk = 512;
     double* z = data(vz);
-    for (int k = 0; k < count; ++k)
-      if (c[k] != 0.0) data(vx[k]);  // threads must not be the first to touch it
-    sweep_blocks(size(vz), [=](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    sweep_blocks(size(vz), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       double sum[kChunk];
       for (std::ptrdiff_t at = begin; at < end; at += kChunk) {
         const std::ptrdiff_t n = std::min(kChunk, end - at);
         std::fill_n(sum, n, 0.0);
-        for (int k = 0; k < count; ++k) {
+        for (std::size_t k = 0; k < c.size(); ++k) {
           const double ck = c[k];
-          if (ck == 0.0) continue;
-          const double* x = data(vx[k]) + at;
+          const double* xk = x[k] + at;
 #pragma omp simd
-          for (std::ptrdiff_t i = 0; i < n; ++i) sum[i] += ck * x[i];
+          for (std::ptrdiff_t i = 0; i < n; ++i) sum[i] += ck * xk[i];
         }
         std::copy_n(sum, n, z + at);
       }
     });
+  }
+
+  /// z = sum c_k x_k; z may be any of the x. Butcher tables are full of zeros: such terms are left out.
+  static int combine(int count, double* c, N_Vector* vx, N_Vector vz) {
+    thread_local std::vector<double> factor;
+    thread_local std::vector<const double*> x;
+    factor.clear();
+    x.clear();
+    for (int k = 0; k < count; ++k)
+      if (c[k] != 0.0) {
+        factor.push_back(c[k]);
+        x.push_back(data(vx[k]));
+      }
+    const double* const f = factor.data();
+    switch (factor.size()) {
+      case 1:
+        combine_few(f, x.data(), vz, std::make_index_sequence<1>{});
+        break;
+      case 2:
+        combine_few(f, x.data(), vz, std::make_index_sequence<2>{});
+        break;
+      case 3:
+        combine_few(f, x.data(), vz, std::make_index_sequence<3>{});
+        break;
+      case 4:
+        combine_few(f, x.data(), vz, std::make_index_sequence<4>{});
+        break;
+      default:
+        combine_many(factor, x, vz);
+    }
     return 0;
   }
 

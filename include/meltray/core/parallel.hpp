@@ -33,8 +33,8 @@ void parallel_for(std::ptrdiff_t n, F&& f) {
   for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
 }
 
-/// The same where the cost of an item depends on its place, as rows of a patch do: many for melt, none for what
-/// rests. Threads take turns.
+/// The same where the cost of an item depends on its place, as rows of a patch do: many for melt, none for
+/// what rests. Threads take turns.
 template <class F>
 void parallel_for_uneven(std::ptrdiff_t n, F&& f) {
   if (n < kSerialBelow) {

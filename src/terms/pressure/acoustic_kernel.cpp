@@ -29,8 +29,8 @@ inline double sum(const Lanes& lanes) {
   return std::experimental::reduce(lanes);
 }
 
-/// 1 / x to 42 bits at least. Where 512-bit registers share one unit for roots and quotients, that unit is what
-/// a pass waits for: an estimate of 14 bits and one step of third order leave it the roots alone.
+/// 1 / x to 42 bits at least. Where 512-bit registers share one unit for roots and quotients, that unit is
+/// what a pass waits for: an estimate of 14 bits and one step of third order leave it the roots alone.
 inline Lanes inverse(const Lanes& x) {
 #ifdef __AVX512F__
   const Lanes first(_mm512_rcp14_pd(static_cast<__m512d>(x)));
@@ -52,8 +52,7 @@ inline void for_pieces(const OctetLists& lists, Index group, F&& f) {
 template <int D, class Plain>
 struct Scaled {
   double inverse_h, scale_w;
-  explicit Scaled(double h)
-      : inverse_h(1 / h), scale_w(Plain::kAlpha / (D == 2 ? h * h : h * h * h)) {}
+  explicit Scaled(double h) : inverse_h(1 / h), scale_w(Plain::kAlpha / (D == 2 ? h * h : h * h * h)) {}
 };
 
 /// sph::WendlandC2 over registers. The factor of its F is inside the cube.

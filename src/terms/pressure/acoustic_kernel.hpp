@@ -19,7 +19,7 @@ struct AcousticFields {
   const double* pressure;  ///< [Pa]
   const double* drag;      ///< 1 where it takes part in artificial viscosity, else 0; of walls only
   const double* excess;    ///< rho - rho_0(T) [kg/m^3]; of melt only
-  double* gradient[3];     ///< renormalised gradient of the excess [kg/m^4]; of melt, with Antuono's diffusion
+  double* gradient[3];  ///< renormalised gradient of the excess [kg/m^4]; of melt, with Antuono's diffusion
 };
 
 /// A ClusterList.

@@ -114,7 +114,7 @@ std::vector<Sums> plain_sums(const Pool& b, const AcousticPass& pass) {
       const int wall = b.patch.wall[j];
       if (along < 0 && !(wall && !b.constants.faces[wall - 1].no_slip))
         s.force += b.patch.mass[j] * pass.artificial.alpha * c * h * along * f(r) /
-                     (0.5 * (b.patch.density[i] + b.patch.density[j]) * (r * r + 0.01 * h * h)) * d;
+                   (0.5 * (b.patch.density[i] + b.patch.density[j]) * (r * r + 0.01 * h * h)) * d;
     }
   }
   return all;
