@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
-#include <cstring>
+#include <limits>
 
 #include "meltray/core/memory.hpp"
+#include "sph/eight_candidates.hpp"
 
 namespace meltray::sph {
 
@@ -17,6 +17,8 @@ namespace {
 constexpr Index kCellsPerBlock = 32, kCellsPerBlockOfPiece = 8;
 /// Widens the reach of the search by more than single precision loses over a cell and its neighbours.
 constexpr float kRounding = 1.00001f;
+/// Smoothing length of what fills up the candidates: nothing is less than a reach that is not a number.
+constexpr float kNoReach = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -50,69 +52,50 @@ void PairList::gather_candidates(const Patch& patch, const CellGrid& grid, Index
     for (Index j = patch.cell_start[near]; j < patch.cell_start[near + 1]; ++j) block.candidate.push_back(j);
   });
   const Index n = static_cast<Index>(block.candidate.size()), origin = patch.cell_start[cell];
+  const Index filled = (n + kCandidates - 1) / kCandidates * kCandidates;
+  block.candidate.resize(filled, origin);
   for (int c = 0; c < D; ++c) {
-    block.candidate_x[c].resize(n);
+    block.candidate_x[c].resize(filled);
     for (Index k = 0; k < n; ++k)
       block.candidate_x[c][k] =
           static_cast<float>(nearest(c, patch.x[c][block.candidate[k]] - patch.x[c][origin]));
   }
-  block.candidate_h.resize(n);
+  block.candidate_h.resize(filled);
   for (Index k = 0; k < n; ++k)
     block.candidate_h[k] = static_cast<float>(patch.smoothing[block.candidate[k]]);
-  block.near.assign((n + 7) / 8 * 8, 0);  // whole words
+  std::fill(block.candidate_h.begin() + n, block.candidate_h.end(), kNoReach);
 }
 
 /// Appends the candidates within reach of particle i of the cell that starts with particle `origin`.
 template <int D>
 void PairList::search_row(const Patch& patch, Index i, Index origin, double skin, Block& block) const {
   const Index n = static_cast<Index>(block.candidate.size());
-  float xi[D], length[D], inverse[D];
+  SearchedRow<D> row{};
   bool periodic = false;
   for (int c = 0; c < D; ++c) {
-    xi[c] = static_cast<float>(nearest(c, patch.x[c][i] - patch.x[c][origin]));
-    length[c] = static_cast<float>(period_[c]);
-    inverse[c] = period_[c] > 0 ? static_cast<float>(1 / period_[c]) : 0.0f;
+    row.x[c] = static_cast<float>(nearest(c, patch.x[c][i] - patch.x[c][origin]));
+    row.period[c] = static_cast<float>(period_[c]);
+    row.inverse_period[c] = period_[c] > 0 ? static_cast<float>(1 / period_[c]) : 0.0f;
     periodic = periodic || period_[c] > 0;
   }
-  const auto reach_of_i = static_cast<float>(kRounding * (patch.smoothing[i] + skin));
-  const float* const hj = block.candidate_h.data();
-  const float* const xj[3] = {block.candidate_x[0].data(), block.candidate_x[1].data(),
-                              block.candidate_x[2].data()};
-  std::uint8_t* const near = block.near.data();
-  const auto test = [&](auto wraps) {
-#pragma omp simd
-    for (Index k = 0; k < n; ++k) {
-      float r2 = 0;
-      for (int c = 0; c < D; ++c) {
-        float x = xi[c] - xj[c][k];
-        if constexpr (wraps) x -= length[c] * std::rint(x * inverse[c]);
-        r2 += x * x;
-      }
-      const float reach = reach_of_i + kRounding * hj[k];
-      near[k] = r2 < reach * reach;
-    }
-  };
-  if (periodic)
-    test(std::true_type{});
-  else
-    test(std::false_type{});
+  row.reach = static_cast<float>(kRounding * (patch.smoothing[i] + skin));
+  row.rounding = kRounding;
 
-  if (const std::size_t least = block.used + n; block.entries.size() < least) {
+  if (const std::size_t least = block.used + n + kCandidates; block.entries.size() < least) {
     block.entries.reserve(least + least / 8);
     block.entries.resize(least + least / 8);
   }
-  Index* const out = block.entries.data() + block.used;
-  Index found = 0;
-  // Eight bytes looked at together: nine candidates of ten are too far away.
-  for (Index first_of_eight = 0; first_of_eight < n; first_of_eight += 8) {
-    std::uint64_t eight;
-    std::memcpy(&eight, near + first_of_eight, 8);
-    for (; eight != 0; eight &= eight - 1) {
-      const Index j = block.candidate[first_of_eight + std::countr_zero(eight) / 8];
-      out[found] = j;
-      found += j != i;
+  const auto take = [&](auto wraps) {
+    Index* out = block.entries.data() + block.used;
+    for (Index k = 0; k < n; k += kCandidates) {
+      const std::array<const float*, 3> x{block.candidate_x[0].data() + k, block.candidate_x[1].data() + k,
+                                          block.candidate_x[2].data() + k};
+      const unsigned mask = within_reach<D, wraps>(row, x, block.candidate_h.data() + k);
+      out += take_marked(block.candidate.data() + k, mask, i, out);
     }
-  }
+    return static_cast<Index>(out - (block.entries.data() + block.used));
+  };
+  const Index found = periodic ? take(std::true_type{}) : take(std::false_type{});
   block.used += found;
   block.row.push_back(i);
   block.count.push_back(found);
@@ -280,8 +263,7 @@ void PairList::refresh_rows(const Patch& patch, const std::vector<Index>* some) 
 std::size_t PairList::bytes() const {
   std::size_t n =
       held_bytes(start_, count_, j_, w_, f_, next_to_melt_, next_to_wall_, wanted_) + held_bytes(dx_);
-  for (const Block& b : blocks_)
-    n += held_bytes(b.row, b.count, b.entries, b.candidate, b.candidate_h, b.near);
+  for (const Block& b : blocks_) n += held_bytes(b.row, b.count, b.entries, b.candidate, b.candidate_h);
   return n;
 }
 

@@ -157,7 +157,6 @@ class PairList {
     std::vector<Index> candidate;
     std::array<std::vector<float>, 3> candidate_x;
     std::vector<float> candidate_h;
-    std::vector<std::uint8_t> near;  ///< 1 = within reach, of one row at a time
   };
   template <int D>
   void gather_candidates(const Patch& patch, const CellGrid& grid, Index cell, Block& block) const;
