@@ -15,7 +15,7 @@ namespace meltray::scene {
 /// Share of the spacing by which lists reach beyond the support: where lists are kept while particles move,
 /// where they are built anew for every step (only what enters the edge of the support during a step is
 /// missed), and where a patch follows the melt in steps at the speed of sound, many of which a list outlasts.
-inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05, kSkinOfSound = 0.5;
+inline constexpr double kSkin = 0.25, kSkinOfStep = 0.05, kSkinOfSound = 0.3;
 inline bool follows_melt(const Scene& scene) {
   return scene.heat.bulk_interval > 0;
 }
