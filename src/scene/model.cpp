@@ -209,16 +209,19 @@ void Model::unpack(const double* y) {
   if (has_elastic_solid()) unpack_elastic(y);
 }
 
-void Model::evaluate_patch(double t) {
+void Model::evaluate_patch(double t, bool rests) {
   stage.t = t;
-  if (needs_pairs()) {
+  if (needs_pairs() && !rests) {
     const auto timer = timers_.measure(Part::neighbours);
     pairs.refresh(patch, constants_.kernel);
   }
   parallel_for(stage.size(), [&](Index i) { update_temperature(i); });
   if (weakly_compressible()) acoustic_->state.update(stage);
   if (has_elastic_solid()) elastic_->update(stage);
-  update_surface();
+  if (rests)
+    forget_coefficients();
+  else
+    update_surface();
 }
 
 void Model::update_temperature(Index i) {
@@ -237,6 +240,10 @@ void Model::update_surface() {
     acoustic_->gather(stage);
     update_surface_pressure();
   }
+  forget_coefficients();
+}
+
+void Model::forget_coefficients() {
   implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = marangoni_valid_ = false;
 }
 

@@ -52,8 +52,9 @@ class Model : public OdeProblem {
   /// The pairs of a patch that has been selected anew and whose stage is prepared: `skin` [m] as in the list,
   /// periods of the box [m].
   void find_pairs(double skin, const std::array<double, 3>& period);
-  /// Geometry, temperatures and surface of the patch as it is. The stage must have been prepared for it.
-  void evaluate_patch(double t);
+  /// Geometry, temperatures and surface of the patch as it is; where it `rests`, geometry and surface are
+  /// those of the last call. The stage must have been prepared for it.
+  void evaluate_patch(double t, bool rests = false);
   /// Copies the evaluated patch into y and describes its fields.
   void pack(std::vector<double>& y, std::vector<StateField>& fields);
   /// Copies y into the patch and makes geometry, temperatures and surface those of y.
@@ -117,6 +118,7 @@ class Model : public OdeProblem {
   terms::Rates cleared_rates();
   void update_temperature(Index i);
   void update_surface();
+  void forget_coefficients();
   void update_surface_pressure();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
   terms::ViscousOperator& viscous_operator(bool implicit_part);

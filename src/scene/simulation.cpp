@@ -44,14 +44,17 @@ Vec3 Simulation::Impl::liquid_momentum() const {
   return p;
 }
 
-/// Selects the patch, builds its lists, and prepares the stage. Lists of a scene at rest are kept.
-void Simulation::Impl::select() {
+/// Selects the patch, builds its lists, and prepares the stage. Lists of a scene at rest are kept. True where
+/// nothing has moved since the last selection.
+bool Simulation::Impl::select() {
   const auto timer = timers.measure(Part::neighbours);
   const bool everything = scene.heat.bulk_interval <= 0;
   if (lists_valid && keeps_lists(scene) && list_motion < 0.5 * skin(scene) * constants.spacing) {
     // Same particles, same lists; the store may hold corrected positions and enthalpies.
     if (!written) reload(particles, model.patch);
-    if (model.weakly_compressible()) return;  // nothing melted: the stage stands as well
+    // Nothing melted: the stage stands as well.
+    if (model.weakly_compressible()) return false;
+    if (written && !model.flows()) return true;
   } else {
     // Without heat nothing happens away from the melt.
     if (everything && model.needs_pairs())
@@ -92,6 +95,7 @@ void Simulation::Impl::select() {
       in_state_list.push_back(model.patch.global[i]);
     }
   }
+  return false;
 }
 
 /// Makes the patch, its lists and its surface those of the particles in the store, and brings the light to
@@ -105,8 +109,8 @@ void Simulation::Impl::prepare() {
     deposited = false;
     lists_valid = lists_valid && !first && (everything || lit == laser->lit());
   }
-  select();
-  model.evaluate_patch(time);
+  const bool rests = select();
+  model.evaluate_patch(time, rests);
   if (laser && !(deposited && model.weakly_compressible())) {
     const auto timer = timers.measure(Part::laser);
     laser->deposit(model.stage, model.laser_power);

@@ -47,7 +47,7 @@ struct Simulation::Impl {
   }
 
   void begin();
-  void select();
+  bool select();
   void prepare();
   void choose_partitions(double longest);
   StepInfo step(double t_stop);
