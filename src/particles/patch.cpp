@@ -91,10 +91,7 @@ void PatchSelector::mark_near(const Particles& particles, Index cell, Index reac
     low[c] = particles.x[c][*least];
     high[c] = particles.x[c][*most];
   }
-  const double far2 = std::pow(reach * grid_.width(), 2);
-  grid_.for_block(cell, reach, [&](Index k) {
-    if (grid_.distance2(k, low, high) <= far2) mark(k);
-  });
+  grid_.for_near(cell, reach, reach * grid_.width(), low, high, [&](Index k) { mark(k); });
 }
 
 void PatchSelector::select_near_melt(const Particles& particles, std::span<const Index> also, Patch& patch,

@@ -136,23 +136,12 @@ struct VectorOps {
         factor.push_back(c[k]);
         x.push_back(data(vx[k]));
       }
-    const double* const f = factor.data();
-    switch (factor.size()) {
-      case 1:
-        combine_few(f, x.data(), vz, std::make_index_sequence<1>{});
-        break;
-      case 2:
-        combine_few(f, x.data(), vz, std::make_index_sequence<2>{});
-        break;
-      case 3:
-        combine_few(f, x.data(), vz, std::make_index_sequence<3>{});
-        break;
-      case 4:
-        combine_few(f, x.data(), vz, std::make_index_sequence<4>{});
-        break;
-      default:
-        combine_many(factor, x, vz);
-    }
+    const auto few = [&]<std::size_t... N>(std::index_sequence<N...>) {
+      return ((factor.size() == N + 1 &&
+               (combine_few(factor.data(), x.data(), vz, std::make_index_sequence<N + 1>{}), true)) ||
+              ...);
+    };
+    if (!few(std::make_index_sequence<4>{})) combine_many(factor, x, vz);
     return 0;
   }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "meltray/core/vec.hpp"
 
@@ -46,36 +48,34 @@ class CellGrid {
   void for_block(Index centre, Index reach, F&& f) const {
     const auto k = unflatten(centre);
     std::array<Index, 3> low{0, 0, 0}, high{0, 0, 0};
-    for (int c = 0; c < dim_; ++c) {
-      low[c] = k[c] - reach;
-      high[c] = k[c] + reach;
-      if (period_[c] == 0) {
-        low[c] = std::max<Index>(low[c], 0);
-        high[c] = std::min<Index>(high[c], count_[c] - 1);
-      } else if (2 * reach + 1 > count_[c]) {
-        low[c] = 0;
-        high[c] = count_[c] - 1;
-      }
-    }
+    for (int c = 0; c < dim_; ++c) std::tie(low[c], high[c]) = block(c, k[c], reach);
     for (Index x = low[0]; x <= high[0]; ++x)
       for (Index y = low[1]; y <= high[1]; ++y)
         for (Index z = low[2]; z <= high[2]; ++z) f(flat({wrap(0, x), wrap(1, y), wrap(2, z)}));
   }
 
-  /// Squared distance of a box from a cell [m^2]. The outermost cells go on to infinity, as they hold what is
-  /// outside; periodic directions are left out. Not above that of the particles in both.
-  double distance2(Index cell, const Vec3& min, const Vec3& max) const {
-    const auto k = unflatten(cell);
-    double sum = 0;
+  /// Calls f(cell) for the cells within `reach` cells of `centre` that are no farther than `far` [m] from a
+  /// box in it. The outermost cells go on to infinity, as they hold what is outside; periodic directions
+  /// count as no distance. `reach` is 8 at most.
+  template <class F>
+  void for_near(Index centre, Index reach, double far, const Vec3& min, const Vec3& max, F&& f) const {
+    constexpr Index kMost = 2 * 8 + 1;
+    const auto k = unflatten(centre);
+    std::array<std::array<double, kMost>, 3> gap2{};
+    std::array<std::array<Index, kMost>, 3> at{};
+    std::array<Index, 3> count{1, 1, 1};
     for (int c = 0; c < dim_; ++c) {
-      if (period_[c] > 0) continue;
-      const double width = 1 / inverse_width_[c], low = min_[c] + k[c] * width;
-      const double below = k[c] > 0 ? low - max[c] : 0.0,
-                   above = k[c] < count_[c] - 1 ? min[c] - (low + width) : 0.0;
-      const double gap = std::max({0.0, below, above});
-      sum += gap * gap;
+      const auto [low, high] = block(c, k[c], reach);
+      count[c] = 0;
+      for (Index n = low; n <= high; ++n, ++count[c]) {
+        at[c][count[c]] = wrap(c, n);
+        gap2[c][count[c]] = period_[c] > 0 ? 0.0 : square(gap(c, n, min[c], max[c]));
+      }
     }
-    return sum;
+    for (Index x = 0; x < count[0]; ++x)
+      for (Index y = 0; y < count[1]; ++y)
+        for (Index z = 0; z < count[2]; ++z)
+          if (gap2[0][x] + gap2[1][y] + gap2[2][z] <= far * far) f(flat({at[0][x], at[1][y], at[2][z]}));
   }
 
   /// Calls f(cell) for the cells that a box touches (no periodic images).
@@ -92,6 +92,19 @@ class CellGrid {
   }
 
  private:
+  static double square(double x) { return x * x; }
+  /// First and last cell of a block along one direction, before they are wrapped.
+  std::pair<Index, Index> block(int c, Index k, Index reach) const {
+    if (period_[c] == 0) return {std::max<Index>(k - reach, 0), std::min<Index>(k + reach, count_[c] - 1)};
+    if (2 * reach + 1 > count_[c]) return {0, count_[c] - 1};
+    return {k - reach, k + reach};
+  }
+  /// Distance of a stretch from cell k along one direction [m].
+  double gap(int c, Index k, double min, double max) const {
+    const double width = 1 / inverse_width_[c], low = min_[c] + k * width;
+    const double below = k > 0 ? low - max : 0.0, above = k < count_[c] - 1 ? min - (low + width) : 0.0;
+    return std::max({0.0, below, above});
+  }
   Index wrap(int c, Index k) const { return k < 0 ? k + count_[c] : k >= count_[c] ? k - count_[c] : k; }
   Index coordinate(int c, double x) const {
     double s = (x - min_[c]) * inverse_width_[c];

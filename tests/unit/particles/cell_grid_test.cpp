@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/particles/cell_grid.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
@@ -53,6 +54,24 @@ TEST_CASE("blocks stop at free faces and wrap around at periodic ones, each cell
   const CellGrid narrow(2, Vec3::Zero(), Vec3(0.4, 1, 0), 0.1, {true, false, false});
   const auto wide = block(narrow, narrow.flat({1, 5, 0}), 2);
   CHECK((wide.size() == 4 * 5 && std::set<Index>(wide.begin(), wide.end()).size() == wide.size()));
+}
+
+TEST_CASE("cells near a box are those of the block that some point of the box is close to") {
+  const CellGrid grid(3, Vec3::Zero(), Vec3(1, 1, 0.8), 0.1, {false, true, false});
+  const Vec3 low(0.52, 0.51, 0.73), high(0.55, 0.57, 0.74);  // in the topmost cells, which go on upwards
+  const Index centre = cell_at(grid, low);
+  const double far = 0.17;
+  std::vector<Index> near;
+  grid.for_near(centre, 2, far, low, high, [&](Index c) { near.push_back(c); });
+  std::vector<Index> expected;
+  for (const Index c : block(grid, centre, 2)) {
+    const auto k = grid.unflatten(c);
+    const double dx = std::max({0.0, 0.1 * k[0] - high[0], low[0] - 0.1 * (k[0] + 1)});
+    const double dz = std::max(0.0, k[2] < 7 ? low[2] - 0.1 * (k[2] + 1) : 0.0);
+    if (dx * dx + dz * dz <= far * far) expected.push_back(c);
+  }
+  CHECK(near == expected);
+  CHECK((near.size() < block(grid, centre, 2).size() && near.size() > 5 * 3));
 }
 
 TEST_CASE("positions outside a periodic box are those of their image inside") {
