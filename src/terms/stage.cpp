@@ -93,13 +93,14 @@ std::size_t Stage::bytes() const {
 
 void prepare_stage(Stage& s, bool with_surface) {
   const Index n = s.size();
+  const Index of_surface = with_surface ? n : 0;  // compute_surface() sets all but the pressure
   for (auto* a : {&s.volume, &s.temperature}) a->resize(n);
-  for (auto* a : {&s.fill, &s.diagonal, &s.exposure, &s.surface, &s.area, &s.surface_pressure})
-    a->assign(with_surface ? n : 0, 0.0);
+  for (auto* a : {&s.fill, &s.diagonal, &s.exposure, &s.surface, &s.area}) a->resize(of_surface);
   for (int c = 0; c < s.constants->dim; ++c) {
-    s.grad_c[c].assign(with_surface ? n : 0, 0.0);
-    s.normal[c].assign(with_surface ? n : 0, 0.0);
+    s.grad_c[c].resize(of_surface);
+    s.normal[c].resize(of_surface);
   }
+  s.surface_pressure.assign(of_surface, 0.0);
   s.loose.assign(n, 0);
   s.moving.clear();
   s.heated.clear();
