@@ -134,6 +134,7 @@ class Model : public OdeProblem {
   terms::ViscousChoice viscous(bool implicit_part) const;
   bool needs_surface() const;
   bool holds_positions(const double* y) const;
+  bool holds_enthalpies(const double* y) const;
   bool holds_rest(const double* y) const;
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
