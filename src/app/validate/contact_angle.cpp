@@ -76,8 +76,8 @@ std::vector<Sessile> repeat(const Setting& setting, double degrees, const std::v
 Rows contact_angle(const Setting& setting) {
   const std::vector<double> angles =
       setting.small ? std::vector<double>{90} : std::vector<double>{30, 90, 120};
-  // Where the line of contact stops is decided by single particles: at 120 degrees it differs by 6 from one spacing
-  // to the next, and so it does by rounding alone. The finest row is the median of five.
+  // Where the line of contact stops is decided by single particles: at 120 degrees it differs by 6 from one
+  // spacing to the next, and so it does by rounding alone. The finest row is the median of five.
   const std::vector<std::vector<double>> resolutions =
       setting.small ? std::vector<std::vector<double>>{{20}}
                     : std::vector<std::vector<double>>{{20}, {30}, {36, 38, 40, 42, 44}};
