@@ -139,7 +139,7 @@ std::size_t Model::term_bytes() const {
   // solution.
   const std::size_t of_particle = (flows() ? dim : 0) + (weakly_compressible() ? 1 : 0) +
                                   (shifting_.coefficient > 0 ? dim : 0) + (viscous ? 5 * dim + 5 : 0) +
-                                  (stage.heated.empty() ? 0 : 1) + (t.conduction ? 10 : 0) +
+                                  (stage.heated.empty() ? 0 : 1) + (t.conduction ? 11 : 0) +
                                   (projected ? 12 : 0);
   return pairs.slots() * of_pair + particles * of_particle * sizeof(double);
 }

@@ -12,6 +12,7 @@ void ConductionOperator::assemble(const Stage& s) {
   const auto& pairs = *s.pairs;
   conductivity_.resize(n);
   resize_anew(k_, pairs.slots());
+  row_sum_.resize(n);
   wall_slope_.assign(n, 0.0);
   wall_power_.assign(n, 0.0);
   parallel_for(n, [&](Index i) {
@@ -38,6 +39,9 @@ void ConductionOperator::assemble(const Stage& s) {
       if (mi > 0)
         for (Index q = pairs.begin(i); q < pairs.end(i); ++q)
           k[q] *= static_cast<float>(along_surface(mi, missing[pairs.neighbour(q)], lattice));
+      sph::Lanes sum = 0;
+      for (Index q = pairs.begin(i); q < pairs.filled_end(i); q += sph::kLaneCount) sum += sph::load(k + q);
+      row_sum_[i] = sph::sum(sum);
       double slope = 0, power = 0;
       if (s.constants->any_isothermal && pairs.next_to_wall()[i])
         pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
@@ -102,8 +106,7 @@ double ConductionOperator::rate(const Stage& s) const {
   const auto& material = s.constants->material;
   return parallel_max(static_cast<std::ptrdiff_t>(s.heated.size()), 0.0, [&](std::ptrdiff_t row) {
     const Index i = s.heated[row];
-    return -(wall_slope_[i] + row_sum(*s.pairs, i)) / s.patch->mass[i] *
-           material.temperature_slope(s.patch->h[i]);
+    return -(wall_slope_[i] + row_sum_[i]) / s.patch->mass[i] * material.temperature_slope(s.patch->h[i]);
   });
 }
 
@@ -122,7 +125,7 @@ int ConductionOperator::solve(const Stage& s, double gamma, const double* local,
     const Index i = s.heated[row];
     capacity_[i] = mass[i] / material.temperature_slope(s.patch->h[i]) -
                    gamma * (wall_slope_[i] + (local ? local[i] : 0.0));
-    vectors_.inverse_diagonal[i] = 1 / (capacity_[i] - gamma * row_sum(pairs, i));
+    vectors_.inverse_diagonal[i] = 1 / (capacity_[i] - gamma * row_sum_[i]);
     vectors_.r[0][i] = mass[i] * b[i];
   });
   const auto report = solve::conjugate_gradient<1>(
@@ -147,12 +150,6 @@ double ConductionOperator::exchange(const sph::PairList& pairs, Index i, const d
   for (Index q = pairs.begin(i); q < pairs.filled_end(i); q += sph::kLaneCount)
     sum += sph::load(k_.data() + q) * (ti - sph::gather(temperature, j + q));
   return sph::sum(sum);
-}
-
-double ConductionOperator::row_sum(const sph::PairList& pairs, Index i) const {
-  double sum = 0;
-  for (Index q = pairs.begin(i); q < pairs.end(i); ++q) sum += k_[q];
-  return sum;
 }
 
 }  // namespace meltray::terms

@@ -32,10 +32,9 @@ class ConductionOperator {
  private:
   void find_missing_layers(const Stage& stage);
   double exchange(const sph::PairList& pairs, Index i, const double* temperature) const;
-  double row_sum(const sph::PairList& pairs, Index i) const;
 
   std::vector<float> k_;  ///< per pair, rounded alike for (i, j) and (j, i); 0 where no heat is exchanged
-  std::vector<double> conductivity_, missing_, wall_slope_, wall_power_;
+  std::vector<double> conductivity_, missing_, row_sum_, wall_slope_, wall_power_;
   mutable std::vector<double> capacity_, dt_;
   mutable solve::CgVectors<1> vectors_;
 };
