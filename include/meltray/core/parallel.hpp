@@ -21,8 +21,8 @@ inline int threads() {
 inline constexpr std::ptrdiff_t kSerialBelow = 512;
 
 /// Calls f(i) for i in [0, n). f writes only to places owned by i, so the result is the same with any number
-/// of threads. A thread takes consecutive items, here as in every loop, so that what it wrote is still in its
-/// own cache when it reads it.
+/// of threads. A thread takes consecutive items, the same in every loop, so that what it wrote is still in
+/// its own cache when it reads it.
 template <class F>
 void parallel_for(std::ptrdiff_t n, F&& f) {
   if (n < kSerialBelow) {
