@@ -81,7 +81,7 @@ void PairList::search_row(const Patch& patch, Index i, Index origin, double skin
   row.reach = static_cast<float>(kRounding * (patch.smoothing[i] + skin));
   row.rounding = kRounding;
 
-  if (const std::size_t least = block.used + n + kCandidates; block.entries.size() < least) {
+  if (const std::size_t least = block.used + n; block.entries.size() < least) {
     block.entries.reserve(least + least / 8);
     block.entries.resize(least + least / 8);
   }

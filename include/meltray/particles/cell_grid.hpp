@@ -56,26 +56,24 @@ class CellGrid {
 
   /// Calls f(cell) for the cells within `reach` cells of `centre` that are no farther than `far` [m] from a
   /// box in it. The outermost cells go on to infinity, as they hold what is outside; periodic directions
-  /// count as no distance. `reach` is 8 at most.
+  /// count as no distance.
   template <class F>
   void for_near(Index centre, Index reach, double far, const Vec3& min, const Vec3& max, F&& f) const {
-    constexpr Index kMost = 2 * 8 + 1;
     const auto k = unflatten(centre);
-    std::array<std::array<double, kMost>, 3> gap2{};
-    std::array<std::array<Index, kMost>, 3> at{};
-    std::array<Index, 3> count{1, 1, 1};
-    for (int c = 0; c < dim_; ++c) {
-      const auto [low, high] = block(c, k[c], reach);
-      count[c] = 0;
-      for (Index n = low; n <= high; ++n, ++count[c]) {
-        at[c][count[c]] = wrap(c, n);
-        gap2[c][count[c]] = period_[c] > 0 ? 0.0 : square(gap(c, n, min[c], max[c]));
+    std::array<Index, 3> low{0, 0, 0}, high{0, 0, 0};
+    for (int c = 0; c < dim_; ++c) std::tie(low[c], high[c]) = block(c, k[c], reach);
+    const auto gap2 = [&](int c, Index n) {
+      const double g = c < dim_ && period_[c] == 0 ? gap(c, n, min[c], max[c]) : 0.0;
+      return g * g;
+    };
+    for (Index x = low[0]; x <= high[0]; ++x) {
+      const double of_x = gap2(0, x);
+      for (Index y = low[1]; y <= high[1]; ++y) {
+        const double of_xy = of_x + gap2(1, y);
+        for (Index z = low[2]; z <= high[2]; ++z)
+          if (of_xy + gap2(2, z) <= far * far) f(flat({wrap(0, x), wrap(1, y), wrap(2, z)}));
       }
     }
-    for (Index x = 0; x < count[0]; ++x)
-      for (Index y = 0; y < count[1]; ++y)
-        for (Index z = 0; z < count[2]; ++z)
-          if (gap2[0][x] + gap2[1][y] + gap2[2][z] <= far * far) f(flat({at[0][x], at[1][y], at[2][z]}));
   }
 
   /// Calls f(cell) for the cells that a box touches (no periodic images).
@@ -92,7 +90,6 @@ class CellGrid {
   }
 
  private:
-  static double square(double x) { return x * x; }
   /// First and last cell of a block along one direction, before they are wrapped.
   std::pair<Index, Index> block(int c, Index k, Index reach) const {
     if (period_[c] == 0) return {std::max<Index>(k - reach, 0), std::min<Index>(k + reach, count_[c] - 1)};

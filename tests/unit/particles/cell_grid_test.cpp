@@ -72,6 +72,13 @@ TEST_CASE("cells near a box are those of the block that some point of the box is
   }
   CHECK(near == expected);
   CHECK((near.size() < block(grid, centre, 2).size() && near.size() > 5 * 3));
+  // However far it reaches: elastic solid asks for as many cells as the case says.
+  const CellGrid wide(2, Vec3::Zero(), Vec3(6, 6, 0), 0.1, {});
+  const Index middle = wide.flat({30, 30, 0});
+  std::vector<Index> all;
+  wide.for_near(middle, 20, 100, Vec3(3.01, 3.01, 0), Vec3(3.02, 3.02, 0),
+                [&](Index c) { all.push_back(c); });
+  CHECK(all == block(wide, middle, 20));
 }
 
 TEST_CASE("positions outside a periodic box are those of their image inside") {

@@ -169,6 +169,16 @@ TEST_CASE("acoustic pass: terms that are off add nothing", "[acoustic]") {
   AcousticPass pass;
   pass.state.sound_speed = 40;
   b.evaluate(pass);
+  // At the density of rest there is no pressure, and without artificial viscosity no force.
+  Pool still(3, sph::KernelType::wendland_c2, false);
+  still.patch.density.assign(still.patch.size(), still.constants.density);
+  AcousticPass inviscid = pass;
+  still.evaluate(inviscid);
+  Components a = still.zeros();
+  std::vector<double> unused(still.patch.size());
+  inviscid.add_rates(still.stage, unused.data(), view(a));
+  for (const auto& component : a)
+    for (const double value : component) CHECK(value == 0);
   AcousticPass none = pass;
   none.diffusion = {DiffusionForm::antuono, 0};
   b.evaluate(none);
