@@ -19,19 +19,28 @@ constexpr std::string_view kState = "state/";
 
 class SavingArchive final : public Archive {
  public:
-  explicit SavingArchive(std::size_t expected) : out(expected) {}
+  explicit SavingArchive(std::size_t expected) : expected_(expected) {}
   bool loading() const override { return false; }
-  void value(std::string_view name, double& v) override { out.scalar(place(name), v); }
-  void value(std::string_view name, std::int64_t& v) override { out.scalar(place(name), v); }
-  void value(std::string_view name, std::string& v) override { out.scalar(place(name), std::string_view(v)); }
-  void values(std::string_view name, std::vector<double>& v) override { out.dataset(place(name), v); }
-  void values(std::string_view name, std::vector<std::uint8_t>& v) override { out.dataset(place(name), v); }
-  void values(std::string_view name, std::vector<std::int32_t>& v) override { out.dataset(place(name), v); }
+  void value(std::string_view name, double& v) override { out().scalar(place(name), v); }
+  void value(std::string_view name, std::int64_t& v) override { out().scalar(place(name), v); }
+  void value(std::string_view name, std::string& v) override {
+    out().scalar(place(name), std::string_view(v));
+  }
+  void values(std::string_view name, std::vector<double>& v) override { out().dataset(place(name), v); }
+  void values(std::string_view name, std::vector<std::uint8_t>& v) override { out().dataset(place(name), v); }
+  void values(std::string_view name, std::vector<std::int32_t>& v) override { out().dataset(place(name), v); }
 
-  Hdf5Writer out;
+  /// The file takes its memory with the first value: whoever saves may give some back before.
+  Hdf5Writer& out() {
+    if (!out_) out_.emplace(expected_);
+    return *out_;
+  }
 
  private:
   static std::string place(std::string_view name) { return fmt::format("{}{}", kState, name); }
+
+  std::size_t expected_;
+  std::optional<Hdf5Writer> out_;
 };
 
 class LoadingArchive final : public Archive {
@@ -98,15 +107,15 @@ void verify(const std::string& label, std::span<const std::byte> bytes) {
 void write_checkpoint(const fs::path& file, const CheckpointHeader& header,
                       const std::function<void(Archive&)>& save) {
   SavingArchive archive(header.expected_bytes);
-  archive.out.attribute("/", "schema_version", std::int64_t{kCheckpointSchema});
-  archive.out.attribute("/", "units", std::string_view("SI"));
-  archive.out.scalar("header/run_id", std::string_view(header.run_id));
-  archive.out.scalar("header/version", std::string_view(header.version));
-  archive.out.scalar("header/time_s", header.time);
-  archive.out.scalar("header/step", header.step);
-  archive.out.scalar("header/scheduled", std::int64_t{header.scheduled});
   save(archive);
-  const auto image = archive.out.image();
+  archive.out().attribute("/", "schema_version", std::int64_t{kCheckpointSchema});
+  archive.out().attribute("/", "units", std::string_view("SI"));
+  archive.out().scalar("header/run_id", std::string_view(header.run_id));
+  archive.out().scalar("header/version", std::string_view(header.version));
+  archive.out().scalar("header/time_s", header.time);
+  archive.out().scalar("header/step", header.step);
+  archive.out().scalar("header/scheduled", std::int64_t{header.scheduled});
+  const auto image = archive.out().image();
   std::string block = block_text(kCheckpointSchema, image.size(), fnv1a(image));
   block.resize(kBlock, '\0');
   replace_file(file, {std::as_bytes(std::span(block)), image});

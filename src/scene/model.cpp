@@ -9,6 +9,7 @@
 
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/memory.hpp"
 #include "meltray/scene/expected_flow.hpp"
 
 namespace meltray::scene {
@@ -118,11 +119,10 @@ void Model::release() {
   viscous_explicit_ = viscous_implicit_ = {};
   conduction_ = {};
   projection = {};
-  acceleration_ = transport_ = all_forces_ = along_surface_ = solve_b_ = solve_x_ = at_rest_ = {};
-  stress_rate_ = {};
-  for (auto* a : {&heating_, &density_rate_, &surface_pressure_, &loss_slope_, &source_, &other_, &guess_,
-                  &solve_h_b_, &solve_h_x_})
-    *a = {};
+  free_memory(acceleration_, transport_, all_forces_, along_surface_, solve_b_, solve_x_, at_rest_,
+              stress_rate_);
+  free_memory(heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, guess_, solve_h_b_,
+              solve_h_x_);
   if (acoustic_) acoustic_->release();
   terms::release_fields(stage);
 }

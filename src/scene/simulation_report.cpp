@@ -150,7 +150,7 @@ void Simulation::archive(Archive& a) {
   s.model.release();
   s.bulk = {};
   s.integrator.release();
-  s.y = {};
+  free_memory(s.y);
   s.particles.archive(a);
   a.value("time", s.time);
   a.value("next_bulk", s.next_bulk);

@@ -117,8 +117,7 @@ void ClusterSet::pack(const std::vector<double>& field, double empty, AlignedDou
 }
 
 void ClusterSet::close() {
-  for (auto& p : position_) p = {};
-  box_ = {};
+  free_memory(position_, box_);
 }
 
 std::size_t ClusterSet::bytes() const {
@@ -219,7 +218,7 @@ void ClusterList::search(const ClusterSet& rows, const ClusterSet& sources, Inde
 
 void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, double reach) {
   const Index octets = rows.octets(), blocks = (octets + kOctetsPerBlock - 1) / kOctetsPerBlock;
-  octet_ = {};
+  free_memory(octet_);
   std::vector<Block> found(blocks);
   neighbours_.assign(rows.slots(), 0);
   with_dim(rows.dim_, [&](auto d) {

@@ -115,10 +115,8 @@ void prepare_stage(Stage& s, bool with_surface) {
 }
 
 void release_fields(Stage& s) {
-  for (auto* a : {&s.volume, &s.temperature, &s.excess, &s.fill, &s.diagonal, &s.exposure, &s.surface,
-                  &s.area, &s.surface_pressure})
-    *a = {};
-  for (int c = 0; c < 3; ++c) s.grad_c[c] = s.normal[c] = s.wall_normal[c] = {};
+  free_memory(s.volume, s.temperature, s.excess, s.fill, s.diagonal, s.exposure, s.surface, s.area,
+              s.surface_pressure, s.grad_c, s.normal, s.wall_normal);
 }
 
 void compute_surface(Stage& s) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
 #include "time/sweep.hpp"
 
@@ -201,7 +202,7 @@ void VectorSpace::shape(std::span<const StateField> fields, std::size_t length) 
 void VectorSpace::release() {
   for (const auto& c : all_) {
     if (c.get() == view_) continue;
-    c->memory = {};
+    free_memory(c->memory);
     c->data = nullptr;
   }
 }

@@ -17,6 +17,12 @@ void resize_anew(Vector& v, std::size_t n) {
   v.resize(n);
 }
 
+/// Gives the memory of arrays back. `v = {}` would keep it: that assigns an empty list of entries.
+template <class... Vectors>
+void free_memory(Vectors&... v) {
+  ((v = Vectors()), ...);
+}
+
 /// Bytes that arrays hold, also those not in use.
 template <class... Vectors>
 std::size_t held_bytes(const Vectors&... v) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/terms/pressure/acoustic_pass.hpp"
+#include "meltray/core/memory.hpp"
 
 #include <algorithm>
 
@@ -41,7 +42,7 @@ void for_particles(const sph::ClusterSet& set, F&& f) {
 }
 
 template <int D>
-void renormalise(Index slots, const AlignedDoubles (&moments)[6], AlignedDoubles (&gradient)[3]) {
+void renormalise(Index slots, const std::array<AlignedDoubles, 6>& moments, AlignedDoubles (&gradient)[3]) {
   parallel_for(slots, [&](Index s) {
     Eigen::Matrix<double, D, D> moment;
     Eigen::Matrix<double, D, 1> g;
@@ -216,13 +217,7 @@ void AcousticPass::add_rates(const Stage& s, double* density_rate, const MutFiel
 }
 
 void AcousticPass::release() {
-  kind_ = {};
-  melt_ = {};
-  wall_ = {};
-  melt_melt_ = melt_wall_ = wall_melt_ = {};
-  density_rate_ = {};
-  for (auto& f : force_) f = {};
-  for (auto& m : moment_) m = {};
+  free_memory(kind_, melt_, wall_, melt_melt_, melt_wall_, wall_melt_, density_rate_, force_, moment_);
 }
 
 const char* AcousticPass::instructions() {

@@ -18,6 +18,13 @@ TEST_CASE("memory: an array that grows a little holds little more than it needs"
   CHECK(v.data() == place);
 }
 
+TEST_CASE("memory: arrays that are given back hold nothing") {
+  std::vector<double> v(100);
+  std::array<std::vector<char>, 2> c{std::vector<char>(10), std::vector<char>(20)};
+  free_memory(v, c);
+  CHECK(held_bytes(v) + held_bytes(c) == 0);
+}
+
 TEST_CASE("memory: what arrays hold counts, not what they use") {
   std::vector<double> v;
   v.reserve(100);

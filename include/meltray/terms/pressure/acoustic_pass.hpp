@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+
 #include "meltray/sph/clusters.hpp"
 #include "meltray/terms/pressure/weakly_compressible.hpp"
 
@@ -52,7 +54,9 @@ class AcousticPass {
   std::vector<std::uint8_t> kind_;
   Fields melt_, wall_;
   sph::ClusterList melt_melt_, melt_wall_, wall_melt_;
-  AlignedDoubles density_rate_, force_[3], moment_[6];
+  AlignedDoubles density_rate_;
+  std::array<AlignedDoubles, 3> force_;
+  std::array<AlignedDoubles, 6> moment_;
 };
 
 }  // namespace meltray::terms
