@@ -50,6 +50,13 @@ void Model::find_pairs(double skin, const std::array<double, 3>& period) {
   if (acoustic_) acoustic_->find_pairs(stage, skin, period);
 }
 
+void Model::update_equation_of_state() {
+  if (!weakly_compressible()) return;
+  if (scene_.flow.thermal_expansion)
+    for (Index i : stage.heated) update_temperature(i);
+  acoustic_->state.update(stage);
+}
+
 void Model::add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings) {
   const auto timer = timers_.measure(Part::pressure);
   clear(density_rate_, stage.size());

@@ -144,6 +144,7 @@ StepInfo Simulation::Impl::step(double t_stop) {
     report = integrator.step(model, fields, time, t_stop, y);
   }
   model.unpack(y.data());
+  model.update_equation_of_state();
   check(report);
   prepared = false;
   time = report.t;

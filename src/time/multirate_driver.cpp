@@ -46,9 +46,10 @@ struct MultirateDriver::Callbacks {
     MultirateDriver& d = self(stepper);
     return guarded(d, [&] { return d.advance_fast(from, to, y); });
   }
-  static int full(MRIStepInnerStepper stepper, double t, N_Vector y, N_Vector f, int) {
-    MultirateDriver& d = self(stepper);
-    return guarded(d, [&] { return d.fast_rate(t, y, f); });
+  /// The fast rate that ARKODE asks for before and after a step would only serve interpolation.
+  static int full(MRIStepInnerStepper, double, N_Vector, N_Vector f, int) {
+    N_VConst(0.0, f);
+    return 0;
   }
   /// Nothing is remembered between calls of evolve().
   static int reset(MRIStepInnerStepper, double, N_Vector) { return 0; }
@@ -116,6 +117,10 @@ bool MultirateDriver::fast_rate(double t, N_Vector y, N_Vector f) {
 }
 
 bool MultirateDriver::slow_rate(double t, N_Vector y, N_Vector f) {
+  if (fast_done_) {  // at the end, for a next step that goes on from this one; here each begins anew
+    N_VConst(0.0, f);
+    return true;
+  }
   problem_->implicit_rate(t, entries(y), entries(f));
   ++counters_.implicit_evals;
   not_finite_ = !all_finite(entries(f), space_.length());
@@ -142,6 +147,7 @@ bool MultirateDriver::advance_fast(double from, double to, N_Vector y) {
     for (int s = 0; s < table.stages; ++s)
       if (table.b[s] != 0) N_VLinearSum(1.0, y, h * table.b[s], rates_[s].get(), y);
   }
+  fast_done_ = to > end_ - kSame * (to - from);
   return true;
 }
 
@@ -154,7 +160,8 @@ void MultirateDriver::begin(OdeProblem& problem, double t, N_Vector y) {
 
 Attempt MultirateDriver::advance(double h, N_Vector y_new) {
   void* m = mem_.get();
-  not_finite_ = false;
+  not_finite_ = fast_done_ = false;
+  end_ = t_ + h;
   thrown_ = nullptr;
   message_.clear();
   check(MRIStepReset(m, t_, y_), "MRIStepReset");

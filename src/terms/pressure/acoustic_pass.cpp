@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/terms/pressure/acoustic_pass.hpp"
-#include "meltray/core/memory.hpp"
 
 #include <algorithm>
 
+#include "meltray/core/memory.hpp"
 #include "meltray/sph/renormalise.hpp"
 #include "terms/pressure/acoustic_kernel.hpp"
 
