@@ -36,12 +36,6 @@ observe::LineFile open_history(const fs::path& file, double time) {
   return lines;
 }
 
-double last_row_time(const fs::path& file) {
-  const auto table = observe::read_history(file);
-  const auto times = table.find("time_s");
-  return times == table.end() || times->second.empty() ? -1 : times->second.back();
-}
-
 }  // namespace
 
 void RunState::archive(Archive& a) {
@@ -91,8 +85,12 @@ RunLoop::RunLoop(scene::Simulation& simulation, observe::RunFolder& folder, obse
       progress_(options_.quiet, simulation.time(), options_.end),
       began_(std::chrono::steady_clock::now()),
       start_time_(simulation.time()),
-      wall_before_(state_.wall_seconds),
-      row_time_(last_row_time(folder.file("history.csv"))) {}
+      wall_before_(state_.wall_seconds) {
+  auto rows = observe::read_history(folder.file("history.csv"));
+  for (double t : rows["time_s"]) row_time_ = t;
+  for (double variation : rows["density_variation"]) density_sum_ += variation;
+  rows_ = static_cast<std::int64_t>(rows["time_s"].size());
+}
 
 double RunLoop::session_wall() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
@@ -232,6 +230,8 @@ void RunLoop::write_row() {
                     simulation_.scene().flow.sound_speed));
   }
   row_time_ = row.time;
+  density_sum_ += row.density_variation;
+  ++rows_;
   memory_ = simulation_.memory();
   state_.since_row = {};
   progress_.row(row);
@@ -289,6 +289,7 @@ void RunLoop::write_summary(const std::string& outcome, int exit_code, const std
   r.forked_from = state_.forked_from;
   r.checkpoint_time = checkpoint_time_;
   r.threads = threads();
+  r.mean_density_variation = rows_ > 0 ? density_sum_ / static_cast<double>(rows_) : 0;
   observe::write_summary(folder_.file("summary.json"), r, &simulation_);
 }
 

@@ -88,7 +88,9 @@ class RunLoop {
   observe::Progress progress_;
   std::chrono::steady_clock::time_point began_;
   double start_time_, wall_before_;
-  double row_time_ = -1;         ///< of the last row
+  double row_time_ = -1;    ///< of the last row
+  double density_sum_ = 0;  ///< of the density variation over the rows of history.csv
+  std::int64_t rows_ = 0;
   double checkpoint_time_ = -1;  ///< of the newest checkpoint
   bool warned_of_density_ = false;
   /// Bytes by part when the last row was written.

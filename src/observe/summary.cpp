@@ -91,14 +91,12 @@ Json laser_json(const scene::LaserBudget& l) {
           {"dropped_rays", l.dropped_rays}};
 }
 
-Json density_json(const scene::Simulation& s) {
+Json density_json(const scene::Simulation& s, double mean) {
   if (s.scene().flow.solver != scene::FlowSolver::wcsph) return nullptr;
   const auto d = s.density_variation();
-  return {{"now", d.now},
-          {"largest", d.largest},
-          {"allowed", scene::DensityVariation::kAllowed},
-          {"of_particles", 0.99},
-          {"sound_speed_m_s", s.scene().flow.sound_speed}};
+  return {{"now", d.now},         {"mean", mean},
+          {"largest", d.largest}, {"allowed", scene::DensityVariation::kAllowed},
+          {"of_particles", 0.99}, {"sound_speed_m_s", s.scene().flow.sound_speed}};
 }
 
 Json index_json(std::complex<double> m) {
@@ -146,7 +144,7 @@ std::string summary_text(const RunRecord& r, scene::Simulation* simulation) {
   const double simulated = simulation->time() - r.session_start;
   j["model"] = scene::row_of_table(simulation->scene());
   j["optics"] = optics_json(simulation->scene());
-  j["density_variation"] = density_json(*simulation);
+  j["density_variation"] = density_json(*simulation, r.mean_density_variation);
   j["time_s"] = simulation->time();
   j["wall_seconds_per_simulated_ms"] = simulated > 0 ? Json(r.session_wall / (1e3 * simulated)) : Json();
   j["particles"] = {{"liquid", simulation->liquid_count()}, {"active", r.active}};

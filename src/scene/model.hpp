@@ -61,8 +61,8 @@ class Model : public OdeProblem {
   void evaluate(double t, const double* y);
   /// Copies y into the patch, no more: the end of a step whose geometry the next one evaluates.
   void unpack(const double* y);
-  /// Where density is a field of the state, makes the pressures those of the densities: the end of a step that
-  /// is evaluated no more.
+  /// Where density is a field of the state, makes the pressures those of the densities: the end of a step
+  /// that is evaluated no more.
   void update_equation_of_state();
   /// One projection over the step dt [s] that led to the evaluated patch: corrects its velocities, Eq. (6).
   void project(double dt);

@@ -10,7 +10,7 @@ import signal
 import time
 import unittest
 
-from meltray_runner import CASES, Scratch, main, meltray, run, snapshots, start, summary
+from meltray_runner import CASES, Scratch, history, main, meltray, run, snapshots, start, summary
 
 WELD, DAM_BREAK = CASES / "tiny_weld.toml", CASES / "dam_break.toml"
 KILLS = int(os.environ.get("MELTRAY_KILLS", "5"))
@@ -84,6 +84,9 @@ class Restart(Scratch):
         two = run(DAM_BREAK, self.folder / "two", "--threads", "2", "--until", "0.6")
         self.finish(two, "--threads", "2")
         self.assert_same_results(one, two, "dam break")
+        rows, density = history(two)["density_variation"], summary(two)["density_variation"]
+        self.assertAlmostEqual(density["mean"], rows.mean(), delta=1e-6 * rows.mean())
+        self.assertLess(density["mean"], density["largest"])
 
     def test_kill(self):
         """kill -9 again and again, every second time in the middle of a write; threads change on the way."""

@@ -49,8 +49,8 @@ TEST_CASE(
   const auto fields = test::one_field(2, 1e-6, 1e-6);
   std::vector<double> y{1.0, 1.0};
   integrator.step(problem, fields, 0, 1, y);
-  // Three slow stages and 3 x 34 fast steps of 3 used stages. What ARKODE asks for besides, before and after a
-  // step, is not evaluated.
+  // Three slow stages and 3 x 34 fast steps of 3 used stages. What ARKODE asks for besides, before and after
+  // a step, is not evaluated.
   CHECK(integrator.counters().implicit_evals == 3);
   CHECK(integrator.counters().explicit_evals == 3 * 34 * 3);
 }
