@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/observe/version.hpp"
 
+#include "git_hash.hpp"
+
 namespace meltray::observe {
 
 std::string version() {
