@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -25,6 +26,15 @@ std::string command_of(const ListedRun& r) {
 nlohmann::json summary_of(const std::filesystem::path& folder) {
   std::ifstream file(folder / "summary.json");
   return file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+}
+
+double spacing_of(const std::filesystem::path& folder) {
+  const std::string file = (folder / "case.toml").string();
+  try {
+    return toml::parse_file(file)["domain"]["spacing_m"].value_or(0.0);
+  } catch (const toml::parse_error& e) {
+    throw UsageError(fmt::format("{}: {}", file, e.description()));
+  }
 }
 
 bool reached(const ListedRun& r, const nlohmann::json& summary) {

@@ -22,6 +22,10 @@ std::string command_of(const ListedRun& run);
 /// summary.json of a run folder, or null where there is none.
 nlohmann::json summary_of(const std::filesystem::path& folder);
 
+/// Spacing of the particles of a run folder [m], as its own case file has it; 0 where it has none.
+/// Throws UsageError where that file cannot be read.
+double spacing_of(const std::filesystem::path& folder);
+
 /// Whether the run stands at its end.
 bool reached(const ListedRun& run, const nlohmann::json& summary);
 

@@ -118,8 +118,10 @@ Rows absorptance_nist_316l(const Setting& setting) {
     const auto& laser = summary.at("budgets").at("laser");
     welds.push_back({measured[k], laser.at("absorbed_j").get<double>() / laser.at("in_j").get<double>(),
                      keyhole_time(list[k].folder)});
-    judge_spot(welds.back(), {resolution_text(1.5e-5), summary.value("wall_seconds", 0.0), table.source()},
-               rows);
+    judge_spot(
+        welds.back(),
+        {resolution_text(spacing_of(list[k].folder)), summary.value("wall_seconds", 0.0), table.source()},
+        rows);
   }
   judge_series(welds, table.source(), rows);
   return rows;

@@ -111,8 +111,9 @@ Rows keyhole_depth_xray(const Setting& setting) {
     if (!reached(list[k], summary)) continue;
     const Bead& b = measured[k];
     const double depth = mean_depth(list[k].folder, list[k].until);
-    rows.push_back(relative_row(fmt::format("{}, {} W: depth [m]", b.series(), b.power), depth, b.depth, 0.25,
-                                {resolution_text(1e-5), summary.value("wall_seconds", 0.0), table.source()}));
+    rows.push_back(relative_row(
+        fmt::format("{}, {} W: depth [m]", b.series(), b.power), depth, b.depth, 0.25,
+        {resolution_text(spacing_of(list[k].folder)), summary.value("wall_seconds", 0.0), table.source()}));
     series[b.series()].measured[b.power] = b.depth;
     series[b.series()].simulated[b.power] = depth;
   }
