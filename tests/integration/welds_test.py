@@ -17,6 +17,7 @@ class Welds(Scratch):
         """A run folder as a weld leaves it, with one depth from beginning to end."""
         folder = self.folder / "runs" / "keyhole_depth_xray" / name
         folder.mkdir(parents=True)
+        (folder / "case.toml").write_text("[domain]\nspacing_m = 7e-06\n", encoding="utf-8")
         (folder / "summary.json").write_text(json.dumps({"time_s": 1e-3, "wall_seconds": 1.0}), encoding="utf-8")
         (folder / "history.csv").write_text(f"time_s,capillary_depth_m\n0,{depth_m}\n1e-3,{depth_m}\n", encoding="utf-8")
 
@@ -42,6 +43,7 @@ class Welds(Scratch):
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn("1 of 1 rows passed", done.stdout)
+        self.assertIn("dx 7 um", done.stdout)  # the run's own, not that of the list
         self.finished("ss316-0.6m-s-520w", 190e-6)  # measured: 380 um; slope 0.29 of 0.92 mm/kW
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 1, done.stdout)
