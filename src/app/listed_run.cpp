@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/schedule.hpp"
+#include "app/toml_file.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/run_folder.hpp"
@@ -29,12 +29,7 @@ nlohmann::json summary_of(const std::filesystem::path& folder) {
 }
 
 double spacing_of(const std::filesystem::path& folder) {
-  const std::string file = (folder / "case.toml").string();
-  try {
-    return toml::parse_file(file)["domain"]["spacing_m"].value_or(0.0);
-  } catch (const toml::parse_error& e) {
-    throw UsageError(fmt::format("{}: {}", file, e.description()));
-  }
+  return read_toml(folder / "case.toml")["domain"]["spacing_m"].value_or(0.0);
 }
 
 bool reached(const ListedRun& r, const nlohmann::json& summary) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <numeric>
 
 #include "app/schedule.hpp"
 #include "app/signals.hpp"
@@ -87,9 +88,10 @@ RunLoop::RunLoop(scene::Simulation& simulation, observe::RunFolder& folder, obse
       start_time_(simulation.time()),
       wall_before_(state_.wall_seconds) {
   auto rows = observe::read_history(folder.file("history.csv"));
-  for (double t : rows["time_s"]) row_time_ = t;
-  for (double variation : rows["density_variation"]) density_sum_ += variation;
-  rows_ = static_cast<std::int64_t>(rows["time_s"].size());
+  const auto &times = rows["time_s"], &variations = rows["density_variation"];
+  if (!times.empty()) row_time_ = times.back();
+  rows_ = static_cast<std::int64_t>(times.size());
+  density_sum_ = std::accumulate(variations.begin(), variations.end(), 0.0);
 }
 
 double RunLoop::session_wall() const {

@@ -94,7 +94,7 @@ Json laser_json(const scene::LaserBudget& l) {
 Json density_json(const scene::Simulation& s, double mean) {
   if (s.scene().flow.solver != scene::FlowSolver::wcsph) return nullptr;
   const auto d = s.density_variation();
-  return {{"now", d.now},         {"mean", mean},
+  return {{"now", d.now},         {"mean", mean},  // over the rows of history.csv
           {"largest", d.largest}, {"allowed", scene::DensityVariation::kAllowed},
           {"of_particles", 0.99}, {"sound_speed_m_s", s.scene().flow.sound_speed}};
 }

@@ -163,6 +163,11 @@ void Model::update_temperature(Index i) {
   stage.temperature[i] = constants_.material.temperature(patch.h[i]);
 }
 
+void Model::update_heated_temperatures() {
+  parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
+               [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
+}
+
 /// Surface, and the coefficients that rest on it.
 void Model::update_surface() {
   if (needs_surface()) {
@@ -187,9 +192,7 @@ void Model::evaluate(double t, const double* y) {
   if (still && same_h && (same || holds_rest(y)) && t == stage.t) return;
   stage.t = t;
   unpack(y);
-  if (!same_h)
-    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
-                 [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
+  if (!same_h) update_heated_temperatures();
 
   // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
   // coefficients that rest on them are those of the start of the step. A weakly compressible step is so short

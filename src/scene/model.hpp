@@ -120,6 +120,7 @@ class Model : public OdeProblem {
  private:
   terms::Rates cleared_rates();
   void update_temperature(Index i);
+  void update_heated_temperatures();
   void update_surface();
   void forget_coefficients();
   void update_surface_pressure();

@@ -52,9 +52,7 @@ void Model::find_pairs(double skin, const std::array<double, 3>& period) {
 
 void Model::update_equation_of_state() {
   if (!weakly_compressible()) return;
-  if (scene_.flow.thermal_expansion)
-    parallel_for(static_cast<std::ptrdiff_t>(stage.heated.size()),
-                 [&](std::ptrdiff_t k) { update_temperature(stage.heated[k]); });
+  if (scene_.flow.thermal_expansion) update_heated_temperatures();
   acoustic_->state.update(stage);
 }
 

@@ -117,7 +117,9 @@ bool MultirateDriver::fast_rate(double t, N_Vector y, N_Vector f) {
 }
 
 bool MultirateDriver::slow_rate(double t, N_Vector y, N_Vector f) {
-  if (fast_done_) {  // at the end, for a next step that goes on from this one; here each begins anew
+  // At the end of a step, where no slow stage stands, for a next one that goes on from it; here each begins
+  // anew.
+  if (t > end_ - kSame * (end_ - t_)) {
     N_VConst(0.0, f);
     return true;
   }
@@ -147,7 +149,6 @@ bool MultirateDriver::advance_fast(double from, double to, N_Vector y) {
     for (int s = 0; s < table.stages; ++s)
       if (table.b[s] != 0) N_VLinearSum(1.0, y, h * table.b[s], rates_[s].get(), y);
   }
-  fast_done_ = to > end_ - kSame * (to - from);
   return true;
 }
 
@@ -160,7 +161,7 @@ void MultirateDriver::begin(OdeProblem& problem, double t, N_Vector y) {
 
 Attempt MultirateDriver::advance(double h, N_Vector y_new) {
   void* m = mem_.get();
-  not_finite_ = fast_done_ = false;
+  not_finite_ = false;
   end_ = t_ + h;
   thrown_ = nullptr;
   message_.clear();

@@ -65,7 +65,7 @@ class MultirateDriver : public OneStep {
   OdeProblem* problem_ = nullptr;
   double t_ = 0, end_ = 0, fast_step_ = 0;
   N_Vector y_ = nullptr;
-  bool not_finite_ = false, fast_done_ = false;
+  bool not_finite_ = false;
   std::exception_ptr thrown_;
 };
 

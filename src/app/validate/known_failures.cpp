@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
-
+#include "app/toml_file.hpp"
 #include "meltray/core/errors.hpp"
 
 namespace meltray::app {
@@ -29,17 +28,12 @@ bool matches(const std::string& pattern, const std::string& text) {
 }  // namespace
 
 KnownFailures::KnownFailures(const std::filesystem::path& file) {
-  try {
-    const toml::table table = toml::parse_file(file.string());
-    if (const auto* list = table["failure"].as_array())
-      for (const auto& item : *list)
-        if (const auto* entry = item.as_table())
-          failures_.push_back({text_of(*entry, "id", file.string()),
-                               text_of(*entry, "quantity", file.string()),
-                               text_of(*entry, "reason", file.string())});
-  } catch (const toml::parse_error& e) {
-    throw UsageError(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
-  }
+  const toml::table table = read_toml(file);
+  if (const auto* list = table["failure"].as_array())
+    for (const auto& item : *list)
+      if (const auto* entry = item.as_table())
+        failures_.push_back({text_of(*entry, "id", file.string()), text_of(*entry, "quantity", file.string()),
+                             text_of(*entry, "reason", file.string())});
 }
 
 void KnownFailures::mark(Rows& rows) const {

@@ -42,7 +42,8 @@ void for_particles(const sph::ClusterSet& set, F&& f) {
 }
 
 template <int D>
-void renormalise(Index slots, const std::array<AlignedDoubles, 6>& moments, AlignedDoubles (&gradient)[3]) {
+void renormalise(Index slots, const std::array<AlignedDoubles, 6>& moments,
+                 std::array<AlignedDoubles, 3>& gradient) {
   parallel_for(slots, [&](Index s) {
     Eigen::Matrix<double, D, D> moment;
     Eigen::Matrix<double, D, 1> g;
@@ -224,18 +225,14 @@ const char* AcousticPass::instructions() {
   return acoustic_kernel(3, false).instructions;
 }
 
+std::size_t AcousticPass::Fields::bytes() const {
+  return set.bytes() + held_bytes(density, volume, pressure, drag, excess) + held_bytes(x) + held_bytes(v) +
+         held_bytes(gradient);
+}
+
 std::size_t AcousticPass::bytes() const {
-  std::size_t doubles = density_rate_.capacity();
-  for (const Fields* f : {&melt_, &wall_}) {
-    doubles += f->density.capacity() + f->volume.capacity() + f->pressure.capacity() + f->drag.capacity() +
-               f->excess.capacity();
-    for (int c = 0; c < 3; ++c)
-      doubles += f->x[c].capacity() + f->v[c].capacity() + f->gradient[c].capacity();
-  }
-  for (const auto& f : force_) doubles += f.capacity();
-  for (const auto& m : moment_) doubles += m.capacity();
-  return doubles * sizeof(double) + kind_.capacity() + melt_.set.bytes() + wall_.set.bytes() +
-         melt_melt_.bytes() + melt_wall_.bytes() + wall_melt_.bytes();
+  return melt_.bytes() + wall_.bytes() + melt_melt_.bytes() + melt_wall_.bytes() + wall_melt_.bytes() +
+         held_bytes(kind_, density_rate_) + held_bytes(force_) + held_bytes(moment_);
 }
 
 }  // namespace meltray::terms

@@ -44,9 +44,11 @@ class AcousticPass {
   /// A set of particles with its fields, one entry per slot.
   struct Fields {
     sph::ClusterSet set;
-    AlignedDoubles x[3], v[3], density, volume, pressure, drag, excess, gradient[3];
+    std::array<AlignedDoubles, 3> x, v, gradient;
+    AlignedDoubles density, volume, pressure, drag, excess;
     void pack(const Stage& stage);
     AcousticFields view();
+    std::size_t bytes() const;
   };
   AcousticArguments arguments(const Stage& stage);
 
