@@ -34,6 +34,7 @@ Matrix<D> deviator(const Patch& patch, Index i) {
 /// -epsilon times the tensile part of a stress in its principal frame.
 template <int D>
 Matrix<D> repulsion(const Matrix<D>& sigma, double epsilon) {
+  if (Eigen::LLT<Matrix<D>>(-sigma).info() == Eigen::Success) return Matrix<D>::Zero();  // no tension at all
   Eigen::SelfAdjointEigenSolver<Matrix<D>> principal;
   principal.computeDirect(sigma);
   const Eigen::Matrix<double, D, 1> tension = principal.eigenvalues().cwiseMax(0.0);
@@ -68,18 +69,20 @@ void extend_behind_walls(const Stage& s, Index i, Matrix<D>& gradient) {
 
 template <int D>
 Gradients<D> gradients(const Stage& s, Index i, const double* volume, const double* velocity) {
-  Columns<D> moment = Columns<D>::Zero(), gradient = Columns<D>::Zero();
-  const Lane<D> vi = entry<Lane<D>>(velocity, i);
+  Columns<D> moment = no_columns<D>(), gradient = moment;
+  const auto velocity_of = [&](Index k) {
+    return load_lane<D>(velocity + static_cast<std::size_t>(k) * kWidth<D>);
+  };
+  const Lane<D> vi = velocity_of(i);
   s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
     const double vf = volume[p.j] * p.f;
-    if (vf == 0) return;
-    const Lane<D> x = padded<D>(p.x), u = entry<Lane<D>>(velocity, p.j) - vi;
+    const Lane<D> x = padded<D>(p.x), u = velocity_of(p.j) - vi;
     for (int b = 0; b < D; ++b) {
-      moment.col(b) -= vf * p.x[b] * x;
-      gradient.col(b) += vf * p.x[b] * u;
+      moment[b] -= vf * p.x[b] * x;
+      gradient[b] += vf * p.x[b] * u;
     }
   });
-  Gradients<D> out{moment.template topRows<D>(), gradient.template topRows<D>()};
+  Gradients<D> out{matrix_of<D>(moment), matrix_of<D>(gradient)};
   if (s.pairs->next_to_wall()[i]) extend_behind_walls<D>(s, i, out.velocity);
   return out;
 }
@@ -110,12 +113,11 @@ void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
   const Index n = s.size();
   solid_volume_.resize(n);
   velocity_.resize(static_cast<std::size_t>(n) * kWidth<D>);
-  tensors_.resize(static_cast<std::size_t>(n) * 2 * Columns<D>::SizeAtCompileTime);
+  tensors_.resize(static_cast<std::size_t>(n) * 2 * kColumnsSize<D>);
   parallel_for(n, [&](Index i) {
     solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i];
-    auto v = entry<Lane<D>>(velocity_.data(), i);
-    v.setZero();
-    for (int c = 0; c < D; ++c) v[c] = s.patch->v[c][i];
+    double* const v = velocity_.data() + static_cast<std::size_t>(i) * kWidth<D>;
+    for (int c = 0; c < kWidth<D>; ++c) v[c] = c < D ? s.patch->v[c][i] : 0.0;
   });
   parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
     const Index i = s.elastic[k];
@@ -134,12 +136,9 @@ void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
 
     const double p = pressure(rho, reference_density(*s.constants, s.temperature[i]));
     const Matrix<D> sigma = stress - p * Matrix<D>::Identity();
-    auto traction = entry<Columns<D>>(tensors_.data(), 2 * i),
-         repelling = entry<Columns<D>>(tensors_.data(), 2 * i + 1);
-    traction.setZero();
-    repelling.setZero();
-    traction.template topRows<D>() = sigma * correct;
-    repelling.template topRows<D>() = repulsion<D>(sigma, artificial_stress);
+    double* const tensors = tensors_.data() + tensors_begin<D>(i);
+    store_columns<D>(sigma * correct, tensors);
+    store_columns<D>(repulsion<D>(sigma, artificial_stress), tensors + kColumnsSize<D>);
   });
 }
 

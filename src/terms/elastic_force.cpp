@@ -37,6 +37,37 @@ double mean_repulsion(const SceneConstants& k) {
   return sum / all;
 }
 
+/// Factors of the neighbours' stress and artificial stress in the sums of one row.
+struct PairFactors {
+  std::vector<double> stress, repulsion;
+  void resize(Index pairs) {
+    for (auto* factor : {&stress, &repulsion}) factor->resize(static_cast<std::size_t>(pairs));
+  }
+};
+
+/// Force per volume by the stress of elastic neighbours.
+template <int D>
+Vector<D> stress_of_neighbours(const Stage& s, Index i, const PairFactors& of_pair, const double* tensors) {
+  const std::uint8_t* const elastic = s.patch->elastic.data();
+  const Index first = s.pairs->begin(i);
+  Columns<D> sum = no_columns<D>();  // three sums that do not wait for each other
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    if (!elastic[p.j]) return;
+    const double stress = of_pair.stress[p.k - first], repulsion = of_pair.repulsion[p.k - first];
+    const double* const t = tensors + tensors_begin<D>(p.j);
+    for (int b = 0; b < D; ++b)
+      sum[b] += p.x[b] * (stress * load_lane<D>(t + b * kWidth<D>) +
+                          repulsion * load_lane<D>(t + (D + b) * kWidth<D>));
+  });
+  return matrix_of<D>(sum).rowwise().sum();
+}
+
+/// Vector number `which` of some that follow one another.
+template <int D, std::size_t N>
+Vector<D> part(const std::array<double, N>& sums, int which) {
+  return Eigen::Map<const Vector<D>>(sums.data() + which * D);
+}
+
 /// Force per volume by which stress behind slip faces differs from that of particle i: the images of its
 /// tractions are turned round in the shear along the face.
 template <int D>
@@ -98,7 +129,9 @@ void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration
   weigh(s);
   const Patch& patch = *s.patch;
   const double h = s.constants->smoothing, softening = 0.01 * h * h;
-  const auto tensor = [&](Index i, int which) { return entry<Columns<D>>(tensors_.data(), 2 * i + which); };
+  const double *const own_weight = own_weight_.data(), *const drag_of = drag_.data(),
+                      *const density = patch.density.data();
+  const auto v = view(patch.v);
   with_kernel<D>(s.constants->kernel, [&](auto kernel) {
     using Kernel = decltype(kernel);
     const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / h);
@@ -107,29 +140,37 @@ void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration
       const Index i = s.elastic[k];
       if (patch.elastic[i] != static_cast<std::uint8_t>(Elastic::free)) return;
       const double rho = patch.density[i];
-      const Lane<D> vi = entry<Lane<D>>(velocity_.data(), i);
-      // Sums that meet the stress of i, the artificial one with f^4, the stress of the neighbours, the drag.
-      Lane<D> own = Lane<D>::Zero(), near = own, others = own, drag = own;
-      s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-        if (p.f == 0) return;
-        const Lane<D> x = padded<D>(p.x);
-        const double along = (vi - entry<Lane<D>>(velocity_.data(), p.j)).dot(x);
-        const double mean_density = 0.5 * (rho + patch.density[p.j]);
-        drag += drag_[p.j] * p.f * std::min(along, 0.0) / (mean_density * (p.r2() + softening)) * x;
-        const double f = p.w * inverse_w, f4 = f * f * f * f - mean, g = own_weight_[p.j] * p.f;
-        own += g * x;
-        near += g * f4 * x;
-        if (!patch.elastic[p.j]) return;
-        const auto traction = tensor(p.j, 0), repelling = tensor(p.j, 1);
-        for (int b = 0; b < D; ++b) others += g * p.x[b] * (traction.col(b) + f4 * repelling.col(b));
+      thread_local PairFactors of_pair;
+      const Index first = s.pairs->begin(i);
+      of_pair.resize(s.pairs->filled_end(i) - first);
+      double *const stress = of_pair.stress.data(), *const repulsion = of_pair.repulsion.data();
+      // Vectors that meet the stress and the artificial stress of i, and the drag.
+      const auto sums = s.pairs->sum_row<D, 3 * D>(i, [&](const sph::PairLanes<D>& p) {
+        const sph::Lanes f = p.w * inverse_w, f2 = f * f;
+        const sph::Lanes own = p.of(own_weight) * p.f, near = own * (f2 * f2 - mean);
+        sph::store(stress + (p.k - first), own);
+        sph::store(repulsion + (p.k - first), near);
+        sph::Lanes along = 0;
+        for (int c = 0; c < D; ++c) along += (patch.v[c][i] - p.of(v[c])) * p.x[c];
+        const sph::Lanes mean_density = 0.5 * (rho + p.of(density));
+        const sph::Lanes drag =
+            p.of(drag_of) * p.f * min(along, sph::Lanes(0)) / (mean_density * (p.r2() + softening));
+        std::array<sph::Lanes, 3 * D> out;
+        for (int c = 0; c < D; ++c) {
+          out[c] = own * p.x[c];
+          out[D + c] = near * p.x[c];
+          out[2 * D + c] = drag * p.x[c];
+        }
+        return out;
       });
-      const Matrix<D> traction = tensor(i, 0).template topRows<D>(),
-                      repelling = tensor(i, 1).template topRows<D>();
-      Vector<D> force =
-          traction * own.template head<D>() + repelling * near.template head<D>() + others.template head<D>();
+      const double* const tensors = tensors_.data() + tensors_begin<D>(i);
+      const Matrix<D> traction = matrix_of<D>(load_columns<D>(tensors)),
+                      artificial = matrix_of<D>(load_columns<D>(tensors + kColumnsSize<D>));
+      Vector<D> force = traction * part<D>(sums, 0) + artificial * part<D>(sums, 1) +
+                        stress_of_neighbours<D>(s, i, of_pair, tensors_.data());
       if (s.pairs->next_to_wall()[i]) force += along_slip_faces<D>(s, i, traction);
       if (s.pairs->next_to_melt()[i]) force += pressure_of_melt<D>(s, i);
-      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho + h * drag[c];
+      for (int c = 0; c < D; ++c) acceleration[c][i] += force[c] / rho + h * sums[2 * D + c];
       acceleration[D - 1][i] -= gravity;
     });
   });
