@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "meltray/scene/closed_box.hpp"
+#include "meltray/scene/elastic.hpp"
 
 namespace meltray::app {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kWeldSteps = 4, kPoolSteps = 8, kCollapseSteps = 2;
 // Strength of the interface viscosity up to which the projection in every stage allowed the steps of the
 // flow.
 constexpr double kStageViscosity = 50;
+// Modulus of elastic solid, over the metal's own, with which welds of both metals held for a millisecond.
+constexpr double kWeldModulus = 0.01;
 
 void step_factors(const Scene& s, std::vector<std::string>& found) {
   if (s.time.integrator.fixed_step > 0) return;
@@ -75,6 +78,11 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
                     "stiffness limits the step and may break the run down: splitting.projection = \"step\"",
                     strength, kStageViscosity));
   full_boxes(s, found);
+  if (s.laser && scene::is_elastic(s) && s.flow.elastic_modulus_scale > kWeldModulus)
+    found.push_back(fmt::format(
+        "flow.elastic_modulus_scale: {:g} in a weld; with the whole modulus the solid of aluminium "
+        "ran away after 0.2 ms, at half the step too: {:g} or less",
+        s.flow.elastic_modulus_scale, kWeldModulus));
   return found;
 }
 

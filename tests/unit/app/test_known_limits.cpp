@@ -54,6 +54,19 @@ TEST_CASE("stiff interfaces under the projection in every stage are named") {
   CHECK(beyond_known_limits(s).empty());
 }
 
+TEST_CASE("a weld in elastic solid of nearly its whole modulus is named") {
+  scene::Scene s;
+  s.terms.pressure = true;
+  s.flow.solver = scene::FlowSolver::wcsph;
+  s.flow.solid = scene::SolidModel::elastic;
+  CHECK(beyond_known_limits(s).empty());
+  s.laser.emplace();
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.elastic_modulus_scale: 1 in a weld"));
+  s.flow.elastic_modulus_scale = 1e-4;
+  CHECK(beyond_known_limits(s).empty());
+}
+
 TEST_CASE("a full box of walls that looks for a free surface is named") {
   scene::Scene s;
   s.terms.pressure = true;
