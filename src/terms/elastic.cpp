@@ -67,22 +67,31 @@ void extend_behind_walls(const Stage& s, Index i, Matrix<D>& gradient) {
   });
 }
 
+/// Sums of a row: of the moment, which is symmetric, then of the velocity gradient.
 template <int D>
-Gradients<D> gradients(const Stage& s, Index i, const double* volume, const double* velocity) {
-  Columns<D> moment = no_columns<D>(), gradient = moment;
-  const auto velocity_of = [&](Index k) {
-    return load_lane<D>(velocity + static_cast<std::size_t>(k) * kWidth<D>);
-  };
-  const Lane<D> vi = velocity_of(i);
-  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
-    const double vf = volume[p.j] * p.f;
-    const Lane<D> x = padded<D>(p.x), u = velocity_of(p.j) - vi;
-    for (int b = 0; b < D; ++b) {
-      moment[b] -= vf * p.x[b] * x;
-      gradient[b] += vf * p.x[b] * u;
+inline constexpr int kGradientSums = symmetric_count(D) + (D * D);
+
+template <int D>
+Gradients<D> gradients(const Stage& s, Index i, const double* volume) {
+  const auto v = view(static_cast<const Patch&>(*s.patch).v);
+  const auto sums = s.pairs->sum_row<D, kGradientSums<D>>(i, [&](const sph::PairLanes<D>& p) {
+    const sph::Lanes vf = p.of(volume) * p.f;
+    std::array<sph::Lanes, kGradientSums<D>> out;
+    int n = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) out[n++] = -vf * p.x[a] * p.x[b];
+    for (int a = 0; a < D; ++a) {
+      const sph::Lanes u = vf * (p.of(v[a]) - v[a][i]);
+      for (int b = 0; b < D; ++b) out[n++] = u * p.x[b];
     }
+    return out;
   });
-  Gradients<D> out{matrix_of<D>(moment), matrix_of<D>(gradient)};
+  Gradients<D> out;
+  int n = 0;
+  for (int a = 0; a < D; ++a)
+    for (int b = a; b < D; ++b) out.moment(a, b) = out.moment(b, a) = sums[n++];
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) out.velocity(a, b) = sums[n++];
   if (s.pairs->next_to_wall()[i]) extend_behind_walls<D>(s, i, out.velocity);
   return out;
 }
@@ -112,16 +121,11 @@ template <int D>
 void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
   const Index n = s.size();
   solid_volume_.resize(n);
-  velocity_.resize(static_cast<std::size_t>(n) * kWidth<D>);
   tensors_.resize(static_cast<std::size_t>(n) * 2 * kColumnsSize<D>);
-  parallel_for(n, [&](Index i) {
-    solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i];
-    double* const v = velocity_.data() + static_cast<std::size_t>(i) * kWidth<D>;
-    for (int c = 0; c < kWidth<D>; ++c) v[c] = c < D ? s.patch->v[c][i] : 0.0;
-  });
+  parallel_for(n, [&](Index i) { solid_volume_[i] = s.patch->liquid[i] ? 0.0 : s.volume[i]; });
   parallel_for(static_cast<std::ptrdiff_t>(s.elastic.size()), [&](std::ptrdiff_t k) {
     const Index i = s.elastic[k];
-    const auto g = gradients<D>(s, i, solid_volume_.data(), velocity_.data());
+    const auto g = gradients<D>(s, i, solid_volume_.data());
     const Matrix<D> correct = correction<D>(g.moment, s.constants->lattice.second_moment);
     const Matrix<D> gradient = g.velocity * correct;
     const Matrix<D> strain = 0.5 * (gradient + gradient.transpose()), spin = gradient - strain;
@@ -137,8 +141,8 @@ void ElasticSolid::add_stress_rates(const Stage& s, const Rates& rates) const {
     const double p = pressure(rho, reference_density(*s.constants, s.temperature[i]));
     const Matrix<D> sigma = stress - p * Matrix<D>::Identity();
     double* const tensors = tensors_.data() + tensors_begin<D>(i);
-    store_columns<D>(sigma * correct, tensors);
-    store_columns<D>(repulsion<D>(sigma, artificial_stress), tensors + kColumnsSize<D>);
+    store_matrix<D>(sigma * correct, tensors);
+    store_matrix<D>(repulsion<D>(sigma, artificial_stress), tensors + kColumnsSize<D>);
   });
 }
 

@@ -14,9 +14,10 @@ using Vector = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Matrix = Eigen::Matrix<double, D, D>;
 
-template <int D>
-Vector<D> vector(const std::array<double, D>& a) {
-  return Eigen::Map<const Vector<D>>(a.data());
+/// Vector number `which` of some that follow one another.
+template <int D, std::size_t N>
+Vector<D> vector(const std::array<double, N>& sums, int which = 0) {
+  return Eigen::Map<const Vector<D>>(sums.data() + which * D);
 }
 
 /// Mean of (W / W(dx))^4 over the pairs of a lattice, each with its share -F x^2 in a stress: the artificial
@@ -50,7 +51,8 @@ template <int D>
 Vector<D> stress_of_neighbours(const Stage& s, Index i, const PairFactors& of_pair, const double* tensors) {
   const std::uint8_t* const elastic = s.patch->elastic.data();
   const Index first = s.pairs->begin(i);
-  Columns<D> sum = no_columns<D>();  // three sums that do not wait for each other
+  std::array<Lane<D>, D> sum;  // D sums that do not wait for each other
+  sum.fill(0);
   s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
     if (!elastic[p.j]) return;
     const double stress = of_pair.stress[p.k - first], repulsion = of_pair.repulsion[p.k - first];
@@ -59,13 +61,10 @@ Vector<D> stress_of_neighbours(const Stage& s, Index i, const PairFactors& of_pa
       sum[b] += p.x[b] * (stress * load_lane<D>(t + b * kWidth<D>) +
                           repulsion * load_lane<D>(t + (D + b) * kWidth<D>));
   });
-  return matrix_of<D>(sum).rowwise().sum();
-}
-
-/// Vector number `which` of some that follow one another.
-template <int D, std::size_t N>
-Vector<D> part(const std::array<double, N>& sums, int which) {
-  return Eigen::Map<const Vector<D>>(sums.data() + which * D);
+  for (int b = 1; b < D; ++b) sum[0] += sum[b];
+  Vector<D> force;
+  for (int c = 0; c < D; ++c) force[c] = sum[0][c];
+  return force;
 }
 
 /// Force per volume by which stress behind slip faces differs from that of particle i: the images of its
@@ -164,9 +163,9 @@ void ElasticSolid::add_acceleration(const Stage& s, const MutField& acceleration
         return out;
       });
       const double* const tensors = tensors_.data() + tensors_begin<D>(i);
-      const Matrix<D> traction = matrix_of<D>(load_columns<D>(tensors)),
-                      artificial = matrix_of<D>(load_columns<D>(tensors + kColumnsSize<D>));
-      Vector<D> force = traction * part<D>(sums, 0) + artificial * part<D>(sums, 1) +
+      const Matrix<D> traction = load_matrix<D>(tensors),
+                      artificial = load_matrix<D>(tensors + kColumnsSize<D>);
+      Vector<D> force = traction * vector<D>(sums, 0) + artificial * vector<D>(sums, 1) +
                         stress_of_neighbours<D>(s, i, of_pair, tensors_.data());
       if (s.pairs->next_to_wall()[i]) force += along_slip_faces<D>(s, i, traction);
       if (s.pairs->next_to_melt()[i]) force += pressure_of_melt<D>(s, i);

@@ -48,9 +48,9 @@ struct ElasticSolid {
   template <int D>
   void add_acceleration(const Stage& stage, const MutField& acceleration) const;
 
-  mutable std::vector<double> solid_volume_;        ///< 0 for melt [m^3]
-  mutable std::vector<double> own_weight_, drag_;   ///< see weigh() [m^3], [kg m/s]
-  mutable std::vector<double> velocity_, tensors_;  ///< padded; of the latter sigma L and R in turn
+  mutable std::vector<double> solid_volume_;       ///< 0 for melt [m^3]
+  mutable std::vector<double> own_weight_, drag_;  ///< see weigh() [m^3], [kg m/s]
+  mutable std::vector<double> tensors_;            ///< sigma L and R in turn, in padded columns
 };
 
 }  // namespace meltray::terms
