@@ -35,6 +35,9 @@ std::vector<std::string> of_weakly_compressible(const fs::path& cases, const std
   std::vector<std::string> set = {"time.method=multirate",
                                   fmt::format("time.fixed_step_s={}", like.time.integrator.fixed_step),
                                   fmt::format("time.cfl_acoustic={}", like.time.cfl_acoustic),
+                                  fmt::format("time.cfl_advective={}", like.time.cfl_advective),
+                                  fmt::format("time.cfl_force={}", like.time.cfl_force),
+                                  fmt::format("time.cfl_capillary={}", like.time.cfl_capillary),
                                   fmt::format("flow.sound_speed_m_s={}", like.flow.sound_speed)};
   if (scene::preset_of(model).artificial_viscosity)
     set.push_back(fmt::format("flow.artificial_viscosity={}", like.flow.artificial_viscosity));

@@ -17,6 +17,8 @@ const std::vector<ValidationCase>& validation_cases() {
        stefan_two_phase_iron},
       {1, "stefan_two_phase_aluminium", "the same for aluminium", stefan_two_phase_aluminium},
       {1, "surface_flux", "constant flux on a half-space: temperature of the surface", surface_flux},
+      {1, "surface_losses", "evaporation and radiation from a half-space: heat lost, surface temperature",
+       surface_losses},
       {1, "rosenthal", "moving point source on a half-space: temperature behind it", rosenthal},
       {2, "poiseuille_startup", "start of the flow between plates under its weight", poiseuille_startup},
       {2, "couette_startup", "start of the flow between plates of which one moves", couette_startup},

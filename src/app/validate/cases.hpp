@@ -36,6 +36,7 @@ Rows stefan_one_phase(const Setting& setting);
 Rows stefan_two_phase_iron(const Setting& setting);
 Rows stefan_two_phase_aluminium(const Setting& setting);
 Rows surface_flux(const Setting& setting);
+Rows surface_losses(const Setting& setting);
 Rows rosenthal(const Setting& setting);
 Rows poiseuille_startup(const Setting& setting);
 Rows couette_startup(const Setting& setting);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
+#include "app/validate/half_space.hpp"
 #include "app/validate/scenes.hpp"
 #include "meltray/core/constants.hpp"
 
@@ -19,18 +19,6 @@ struct Metal {
 struct Instant {
   double rise = 0, budget = 0, seconds = 0;
 };
-
-/// Temperature of the surface x = 0: layer means extrapolated from the two outermost layers.
-double surface_temperature(const Particles& p, double spacing) {
-  std::array<double, 2> sum{}, count{};
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const auto layer = static_cast<std::size_t>(p.x[0][i] / spacing);
-    if (p.is_wall(i) || layer > 1) continue;
-    sum[layer] += p.temperature[i];
-    ++count[layer];
-  }
-  return 1.5 * sum[0] / count[0] - 0.5 * sum[1] / count[1];
-}
 
 std::vector<Instant> run(const Setting& setting, const Metal& metal, double spacing,
                          const std::vector<double>& times) {
