@@ -18,10 +18,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import EllipseCollection
+from matplotlib.ticker import LogLocator
 
-PANELS = 6  # sections that are drawn, spread evenly over the snapshots
-SOLID, SEAM = "#d9d9d9", "#636363"
+sys.dont_write_bytecode = True  # no folder of compiled code beside the scripts
+from sections import draw_sections  # noqa: E402
+
+ENERGIES = ("stored", "laser", "boundary", "evaporation", "radiation", "ejected", "clamped", "undeposited")
 plt.rcParams.update({"figure.dpi": 130, "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
 
 
@@ -45,6 +47,10 @@ def read_csv(path):
             return float("nan")
 
     return {name: np.array([number(r[i]) for r in data]) for i, name in enumerate(names)}
+
+
+def has_content(values):
+    return np.nanmax(np.abs(values), initial=0) > 0
 
 
 class Run:
@@ -71,6 +77,15 @@ class Run:
     def column(self, name):
         return self.history.get(name, np.full_like(self.history["time_s"], np.nan))
 
+    def has_laser(self):
+        return has_content(self.column("laser_power_w"))
+
+    def axis_depth(self, time):
+        """At a time [s]; [m]."""
+        if not len(self.ms):
+            return 0.0
+        return float(np.interp(time, self.history["time_s"], self.column("axis_depth_m")))
+
     def title(self):
         outcome = self.summary.get("outcome", "")
         return self.name if outcome in ("", "finished") else f"{self.name} ({outcome})"
@@ -92,6 +107,8 @@ def shade_closed(axes, run):
 
 
 def draw_depth(run):
+    if not run.has_laser():
+        return
     figure, axes = plt.subplots(figsize=(7, 3.6))
     shade_closed(axes, run)
     axes.plot(run.ms, 1e3 * run.column("capillary_depth_m"), "C0", label="void (flood from above)")
@@ -112,6 +129,8 @@ def draw_depth(run):
 
 
 def draw_power(run):
+    if not run.has_laser():
+        return
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 5), sharex=True)
     laser = run.column("laser_power_w")
     top.plot(run.ms, 1e-3 * laser, "C3", label="laser")
@@ -129,49 +148,105 @@ def draw_power(run):
     run.save(figure, "power.png")
 
 
-def draw_budgets(run):
-    figure, axes = plt.subplots(2, 2, figsize=(10, 6), sharex=True)
-    energy, error, step, counts = axes.ravel()
-    for name in ("stored", "laser", "boundary", "evaporation", "radiation", "ejected", "clamped", "undeposited"):
+def plot_energies(axes, run):
+    for name in ENERGIES:
         values = run.column(f"energy_{name}_j")
-        if np.nanmax(np.abs(values), initial=0) > 0:
-            energy.plot(run.ms, values, label=name)
-    energy.set_ylabel("energy since t = 0 [J]")
-    if energy.lines:
-        energy.legend(fontsize=7)
-    values = run.column("energy_relative_error")
-    if np.nanmax(values, initial=0) > 0:
-        error.semilogy(run.ms, np.maximum(values, 1e-17))
-    error.set_ylabel("relative error of the energy")
-    if np.nanmax(run.column("dt_s"), initial=0) > 0:
-        step.semilogy(run.ms[1:], 1e6 * run.column("dt_s")[1:])
-    step.set_ylabel("mean step [us]")
-    counts.plot(run.ms, run.column("liquid_particles"), label="liquid")
-    counts.plot(run.ms, run.column("active_particles"), label="active")
-    counts.set_ylabel("particles")
-    counts.legend(fontsize=7)
-    for a in (step, counts):
-        a.set_xlabel("time [ms]")
+        if has_content(values):
+            axes.plot(run.ms, values, label=name)
+    axes.set_ylabel("energy since t = 0 [J]")
+    axes.legend(fontsize=7)
+
+
+def plot_energy_error(axes, run):
+    axes.semilogy(run.ms, np.maximum(run.column("energy_relative_error"), 1e-17))
+    axes.set_ylabel("relative error of the energy")
+
+
+def plot_steps(axes, run):
+    steps = 1e6 * run.column("dt_s")
+    steps[~(steps > 0)] = np.nan  # the first row has no step
+    axes.plot(run.ms, steps)
+    if np.nanmax(steps) > 10 * np.nanmin(steps):
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter("")
+    else:  # a logarithmic axis has too few labels here
+        axes.set_ylim(0, 1.1 * np.nanmax(steps))
+    axes.set_ylabel("mean step [us]")
+
+
+def plot_counts(axes, run):
+    axes.plot(run.ms, run.column("liquid_particles"), label="liquid")
+    axes.plot(run.ms, run.column("active_particles"), label="active")
+    axes.set_ylabel("particles")
+    axes.legend(fontsize=7)
+
+
+def draw_budgets(run):
+    columns = {plot_energies: [f"energy_{name}_j" for name in ENERGIES],
+               plot_energy_error: ["energy_relative_error"],
+               plot_steps: ["dt_s"],
+               plot_counts: ["liquid_particles", "active_particles"]}
+    plots = [plot for plot, names in columns.items() if any(has_content(run.column(n)) for n in names)]
+    if not plots:
+        return
+    rows = -(-len(plots) // 2)
+    figure, grid = plt.subplots(rows, 2, figsize=(10, 3 * rows), squeeze=False, layout="constrained")
+    for axes in grid.ravel()[len(plots):]:
+        axes.set_visible(False)
+    for axes, plot in zip(grid.ravel(), plots):
+        plot(axes, run)
+        axes.set_xlabel("time [ms]")
     figure.suptitle(run.title())
     run.save(figure, "budgets.png")
 
 
-def draw_pool(run):
-    figure, (pool, state) = plt.subplots(2, 1, figsize=(7, 5), sharex=True)
+def plot_pool(axes, run):
     for name in ("length", "width", "depth"):
-        pool.plot(run.ms, 1e3 * run.column(f"pool_{name}_m"), label=f"pool {name}")
-    pool.plot(run.ms, 1e3 * run.column("top_surface_max_m"), "k:", lw=1, label="highest melt")
-    pool.set_ylabel("[mm]")
-    pool.legend(fontsize=7)
-    pool.set_title(run.title())
-    state.plot(run.ms, run.column("max_temperature_k"), "C3")
-    state.set_ylabel("highest temperature [K]", color="C3")
-    speed = state.twinx()
+        values = run.column(f"pool_{name}_m")
+        if has_content(values):
+            axes.plot(run.ms, 1e3 * values, label=f"pool {name}")
+    axes.plot(run.ms, 1e3 * run.column("top_surface_max_m"), "k:", lw=1, label="highest melt")
+    axes.set_ylabel("[mm]")
+    axes.legend(fontsize=7)
+
+
+def plot_extremes(axes, run):
+    axes.plot(run.ms, run.column("max_temperature_k"), "C3")
+    axes.set_ylabel("highest temperature [K]", color="C3")
+    axes.set_xlabel("time [ms]")
+    if not has_content(run.column("max_speed_m_s")):
+        return
+    speed = axes.twinx()
     speed.grid(False)
     speed.plot(run.ms, run.column("max_speed_m_s"), "C0", lw=0.9)
     speed.set_ylabel("highest speed [m/s]", color="C0")
-    state.set_xlabel("time [ms]")
+
+
+def draw_pool(run):
+    if not has_content(run.column("max_temperature_k")):
+        return
+    rows = 2 if has_content(run.column("pool_length_m")) else 1
+    figure, grid = plt.subplots(rows, 1, figsize=(7, 2.5 * rows), sharex=True, squeeze=False)
+    if rows == 2:
+        plot_pool(grid[0, 0], run)
+    plot_extremes(grid[-1, 0], run)
+    grid[0, 0].set_title(run.title())
     run.save(figure, "pool.png")
+
+
+def melt_along_x(run):
+    """Where the last snapshot has melt below the top of the workpiece, as the middles of spacings (the
+    sections of seam.csv), and the spacing [m]; nowhere if it cannot be read."""
+    try:
+        with h5py.File(run.snapshots[-1], "r") as file:
+            spacing = float(file.attrs["spacing_m"])
+            position = file["position"][:].astype(float)
+            melt = (file["phase"][:] == 1) & (position[:, 2] < 0)
+    except (IndexError, OSError, KeyError):
+        return np.array([]), 0.0
+    return (np.unique(np.floor(position[melt, 0] / spacing)) + 0.5) * spacing, spacing
 
 
 def draw_seam(run):
@@ -180,142 +255,27 @@ def draw_seam(run):
     if len(seam.get("x_m", [])) < 2:
         return
     figure, axes = plt.subplots(figsize=(7, 3))
-    axes.plot(1e3 * seam["x_m"], 1e3 * seam["depth_m"], label="depth")
-    if np.any(seam["width_m"] > 0):
-        axes.plot(1e3 * seam["x_m"], 1e3 * seam["width_m"], label="width")
+    x = seam["x_m"]
+    melt, spacing = melt_along_x(run)
+    settled = np.array([not np.any(np.abs(melt - here) < 0.5 * spacing) for here in x])
+    if len(melt):
+        axes.bar(1e3 * melt, 1, 1e3 * spacing, transform=axes.get_xaxis_transform(), color="k", alpha=0.08,
+                 label="still holds melt: not final")
+    for name, color in (("depth", "C0"), ("width", "C1")):
+        values = 1e3 * seam[f"{name}_m"]
+        if has_content(values):
+            # Where melt is left, only its rim has frozen: no depth or width of a seam yet.
+            axes.plot(1e3 * x, values, color, ls=":", lw=1)
+            axes.plot(1e3 * x, np.where(settled, values, np.nan), color, label=name)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("re-solidified seam [mm]")
+    axes.set_ylim(bottom=0)
     axes.legend(fontsize=7)
     axes.set_title(run.title())
     run.save(figure, "seam.png")
 
 
-class Section:
-    """Particles in a slab of one and a half spacings around the plane of the beam."""
-
-    def __init__(self, path):
-        with h5py.File(path, "r") as file:
-            self.time = float(file.attrs["time_s"])
-            self.spacing = float(file.attrs["spacing_m"])
-            position = file["position"][:].astype(float)
-            focus = file.attrs.get("beam_focus_m")
-            self.focus = None if focus is None else np.array(focus)
-            self.axis = None if focus is None else np.array(file.attrs["beam_axis"])
-            self.radius = 0.5 * float(file.attrs.get("beam_focal_diameter_m", 0))
-            self.rayleigh = float(file.attrs.get("beam_rayleigh_length_m", np.inf))
-            self.power = float(file.attrs.get("beam_power_w", 0))
-            y0 = 0.0 if focus is None else float(focus[1])
-            slab = np.abs(position[:, 1] - y0) < 0.75 * self.spacing
-            self.x, self.z = 1e3 * position[slab, 0], 1e3 * position[slab, 2]
-            self.temperature = file["temperature"][:][slab]
-            self.liquid = file["phase"][:][slab] == 1
-            self.seam = (file["resolidified"][:][slab] == 1) & ~self.liquid
-
-    def draw(self, axes, norm, frame, depth_mm):
-        size = 1e3 * self.spacing
-
-        def discs(mask, **look):
-            # A little larger than the spacing: no background shines through the lattice.
-            n = int(mask.sum())
-            if n == 0:  # matplotlib draws an empty collection of this kind as one disc in the corner
-                return
-            axes.add_collection(
-                EllipseCollection(np.full(n, 1.35 * size), np.full(n, 1.35 * size), np.zeros(n), units="xy",
-                                  offsets=np.column_stack((self.x[mask], self.z[mask])),
-                                  transOffset=axes.transData, linewidths=0, rasterized=True, **look))
-
-        discs(~self.liquid & ~self.seam, facecolors=SOLID)
-        discs(self.seam, facecolors=SEAM)
-        discs(self.liquid, array=self.temperature[self.liquid], cmap="inferno", norm=norm)
-        left, right, bottom, top = frame
-        axes.set_xlim(left, right)
-        axes.set_ylim(bottom, top)
-        self.draw_beam(axes, top, -depth_mm)
-        axes.set_aspect("equal")
-        axes.grid(False)
-        axes.set_title(f"t = {1e3 * self.time:.2f} ms", fontsize=9)
-
-    def frame(self):
-        """Left, right, bottom and top of the solid and its seam [mm]; spatter does not count."""
-        x, z = (self.x[~self.liquid], self.z[~self.liquid]) if np.any(~self.liquid) else (self.x, self.z)
-        return np.array([x.min(), x.max(), z.min(), max(z.max(), 0.0)]) if len(x) else None
-
-    def draw_beam(self, axes, top, bottom):
-        """Envelope at 1/e^2 from the top of the picture down to what the beam sees."""
-        if self.focus is None or self.power <= 0 or self.axis[2] >= 0:
-            return
-        z = np.linspace(top, min(bottom, 0.0), 60) * 1e-3
-        along = (z - self.focus[2]) / self.axis[2]
-        x = self.focus[0] + along * self.axis[0]
-        w = self.radius * np.sqrt(1 + (along / self.rayleigh) ** 2)
-        axes.fill_betweenx(1e3 * z, 1e3 * (x - w), 1e3 * (x + w), color="red", alpha=0.25, linewidth=0)
-        axes.plot(1e3 * x, 1e3 * z, "r-", lw=0.5)
-
-
-def draw_sections(run):
-    if not run.snapshots:
-        return
-    chosen = np.unique(np.linspace(0, len(run.snapshots) - 1, PANELS + 1).round().astype(int))
-    if len(chosen) > PANELS:
-        chosen = chosen[1:]  # the start shows nothing but solid
-    sections = []
-    for i in chosen:
-        try:
-            sections.append(Section(run.snapshots[i]))
-        except (OSError, KeyError) as problem:
-            print(f"{run.snapshots[i]}: left out: {problem}", file=sys.stderr)
-    if not sections:
-        return
-    melt = [s.temperature[s.liquid] for s in sections if np.any(s.liquid)]
-    hot = np.concatenate(melt) if melt else np.array([300.0, 301.0])
-    low, high = np.percentile(hot, [1, 99])
-    norm = plt.Normalize(low, max(high, low + 1))
-    frames = [f for f in (s.frame() for s in sections) if f is not None]
-    if not frames:
-        return
-    # All pictures show the same part: the workpiece at the first of them and a fifth of its height above.
-    left, right, bottom, top = frames[0]
-    space = max(0.2 * (top - bottom), 4e3 * sections[0].spacing)
-    edge = 1e3 * sections[0].spacing
-    frame = (left - edge, right + edge, bottom - edge, top + space)
-
-    def depth_at(t):
-        if not len(run.ms):
-            return 0.0
-        return 1e3 * float(np.interp(t, run.history["time_s"], run.column("axis_depth_m")))
-
-    def label(axes):
-        axes.set_ylabel("z [mm]")
-        axes.set_xlabel("x [mm]")
-
-    def colour_bar(figure, axes):
-        colours = plt.cm.ScalarMappable(norm=norm, cmap="inferno")
-        figure.colorbar(colours, ax=axes, shrink=0.8).set_label("temperature of the melt [K]")
-
-    for old in run.plots.glob("section_*.png"):
-        old.unlink()
-    for s in sections:
-        figure, axes = plt.subplots(figsize=(6, 4.5))
-        s.draw(axes, norm, frame, depth_at(s.time))
-        colour_bar(figure, axes)
-        label(axes)
-        run.save(figure, f"section_{1e3 * s.time:07.3f}ms.png")
-
-    columns = min(3, len(sections))
-    rows = -(-len(sections) // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(3.6 * columns + 0.8, 3.2 * rows), squeeze=False,
-                                layout="constrained")
-    for axes in grid.ravel()[len(sections):]:
-        axes.set_visible(False)
-    for axes, s in zip(grid.ravel(), sections):
-        s.draw(axes, norm, frame, depth_at(s.time))
-        label(axes)
-    colour_bar(figure, grid)
-    figure.suptitle(f"{run.title()}: lengthwise section")
-    run.save(figure, "sections.png")
-
-
-def draw_overlay(runs):
+def draw_overlay(folder, runs):
     figure, (depth, power) = plt.subplots(2, 1, figsize=(7.5, 6), sharex=True, height_ratios=(2, 1))
     for i, run in enumerate(runs):
         color = f"C{i % 10}"
@@ -328,7 +288,7 @@ def draw_overlay(runs):
     depth.legend(fontsize=7)
     power.set_ylabel("absorbed power [kW]\n(dashed: laser)")
     power.set_xlabel("time [ms]")
-    runs[0].save(figure, "depth_overlay.png")
+    folder.save(figure, "depth_overlay.png")
 
 
 def main(folders):
@@ -342,8 +302,9 @@ def main(folders):
         draw_budgets(run)
         draw_seam(run)
         draw_sections(run)
-    if len(runs) > 1:
-        draw_overlay(runs)
+    welds = [run for run in runs if run.has_laser()]
+    if len(runs) > 1 and welds:
+        draw_overlay(runs[0], welds)
 
 
 if __name__ == "__main__":

@@ -61,6 +61,11 @@ class DemoCases(Scratch):
         self.assertLess(numpy.abs(front - exact).max(), 2.5e-5)
         self.assertEqual(summary(folder)["outcome"], "stopped")
 
+        self.assertEqual(meltray("plot", folder).returncode, 0)
+        names = {p.name for p in (folder / "plots").glob("*.png")}
+        self.assertTrue({"budgets.png", "pool.png", "sections.png"} <= names, names)
+        self.assertFalse({"depth.png", "power.png"} & names, names)  # it has no laser
+
     def test_quickstart(self):
         folder = run(CASES / "quickstart.toml", self.folder / "quickstart", "--until", "1e-4")
         result, rows = summary(folder), history(folder)
@@ -78,7 +83,8 @@ class DemoCases(Scratch):
         done = meltray("plot", folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         pictures = list((folder / "plots").glob("*.png"))
-        self.assertGreater(len(pictures), 0)
+        names = {p.name for p in pictures}
+        self.assertTrue({"budgets.png", "depth.png", "pool.png", "power.png", "sections.png"} <= names, names)
         self.assertTrue(all(p.stat().st_size > 5000 for p in pictures))
 
     def test_resolved_case_is_the_case(self):
