@@ -168,6 +168,17 @@ void check_top(const Document& document) {
     refuse(resolved->place, "resolved", describe(resolved->value), "true or false");
 }
 
+/// A row of Table 1 and a material fill keys that are not given; in a resolved case all of them are.
+void refuse_defaults_of_resolved(const Document& document) {
+  if (document.resolved.empty()) return;
+  for (const char* path : {"model", "material.name"})
+    if (const Entry* entry = document.find(path); entry && entry->layer > *document.resolved.begin())
+      refuse(entry->place, path,
+             fmt::format("{} over a resolved case, which gives every key that it would fill",
+                         describe(entry->value)),
+             "the keys themselves, or the case file that the resolved one was made of");
+}
+
 Scene build(const Document& document) {
   Scene scene;
   scene.domain.bodies.resize(static_cast<std::size_t>(document.bodies));
@@ -175,6 +186,7 @@ Scene build(const Document& document) {
   const bool has_key = first != document.entries.end() && first->first.starts_with("laser.");
   if (has_key || document.tables.contains("laser")) scene.laser.emplace();
   check_top(document);
+  refuse_defaults_of_resolved(document);
   check_names(document, scene);
   assign_given(document, scene);
   derive_defaults(document, scene);

@@ -70,7 +70,11 @@ std::string key_reference() {
       "`--set`, "
       "override them. A list of bodies replaces the one of the base as a whole; `--set "
       "bodies.0.temperature_k=500` "
-      "changes one body.\n";
+      "changes one body.\n\n"
+      "A property of a material is a number or a formula of the temperature T: `linear`, value + slope (T - "
+      "reference_k), or `andrade`, 10^(a + b_k / T). It is held at its end values outside min_k to max_k, "
+      "which may "
+      "be left out. A `[laser]` needs `domain.dimension = 3`.\n";
   Scene defaults;
   defaults.domain.bodies.emplace_back();
   defaults.laser.emplace();

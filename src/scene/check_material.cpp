@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "meltray/scene/elastic.hpp"
 #include "scene/case_check.hpp"
@@ -63,7 +64,13 @@ void check_material(const Scene& scene, const Document& document) {
     refuse(document.place(key), key, fmt::format("solidus {} K, liquidus {} K", m.solidus, m.liquidus),
            "solidus_k < liquidus_k");
   }
-  const bool vapour = scene.terms.evaporation || scene.terms.recoil;
+  const bool vapour = scene.terms.evaporation || (scene.terms.recoil && scene.surface.recoil_pressure == 0);
+  for (const auto& [key, number] :
+       {std::pair{"material.molar_mass_kg_mol", m.molar_mass},
+        std::pair{"material.latent_heat_vaporisation_j_kg", m.latent_heat_vaporisation}})
+    if (vapour && number == 0)
+      refuse(document.place(key), key, "0 with terms.evaporation or terms.recoil, whose vapour it makes",
+             "a number > 0");
   if (vapour && m.boiling_temperature > 0 && m.boiling_temperature <= m.liquidus)
     refuse(document.place("material.boiling_temperature_k"), "material.boiling_temperature_k",
            fmt::format("{} K", m.boiling_temperature),
@@ -76,6 +83,11 @@ void check_material(const Scene& scene, const Document& document) {
     refuse(document.place("material.surface_tension_floor_n_m"), "material.surface_tension_floor_n_m",
            fmt::format("{} N/m", m.surface_tension_floor),
            fmt::format("at most the surface tension at the liquidus, {} N/m", m.surface_tension(m.liquidus)));
+  if (scene.terms.buoyancy && m.expansion == 0 && !document.given("terms.buoyancy"))
+    refuse(document.place("model"), "model",
+           fmt::format("\"{}\", a row with buoyancy, with material.expansion_1_k = 0, which gives none",
+                       scene.model),
+           "terms.buoyancy = false with it, or material.expansion_1_k > 0");
   if (scene.terms.buoyancy && m.expansion == 0)
     refuse(document.place("terms.buoyancy"), "terms.buoyancy",
            "true with material.expansion_1_k = 0, which gives no buoyancy", "material.expansion_1_k > 0");

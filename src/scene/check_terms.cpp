@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "meltray/scene/closed_box.hpp"
 #include "scene/case_check.hpp"
@@ -40,6 +42,38 @@ void check_thermal(const Scene& scene, const Document& document, int index) {
   if (face.thermal == ThermalKind::temperature && face.kind == FaceKind::free)
     refuse(document.place(key), key, "\"temperature\" on a free face, which has no wall to hold it",
            "\"adiabatic\", \"flux\", or kind = \"wall\"");
+  // Cold solid away from the melt exchanges heat with its kind only.
+  if (face.thermal != ThermalKind::adiabatic && scene.heat.bulk_interval > 0)
+    refuse(document.place("heat.bulk_interval_s"), "heat.bulk_interval_s",
+           fmt::format("{} s with a face that heats or cools ({})", scene.heat.bulk_interval, key), "0 [s]");
+}
+
+/// What moves the melt does nothing where nothing flows. Terms that an earlier layer gave, before a later one
+/// took the flow away on purpose, may stand.
+void check_flowing(const Scene& scene, const Document& document) {
+  const Terms& t = scene.terms;
+  if (t.pressure) {
+    if (!t.melting && scene.flow.solid == SolidModel::fixed && !document.given("flow.solid") &&
+        hottest(scene) < scene.material.liquidus &&
+        document.layer("terms.melting") <= document.layer("terms.pressure"))
+      inert(document, "terms.pressure", "nothing is liquid and nothing melts",
+            "terms.melting = true or a liquid body with it");
+    return;
+  }
+  const std::array<std::pair<const char*, bool>, 7> forces = {
+      {{"terms.viscosity", t.viscosity},
+       {"terms.interface_viscosity", t.interface_viscosity},
+       {"terms.artificial_viscosity", t.artificial_viscosity},
+       {"terms.surface_tension", t.surface_tension},
+       {"terms.recoil", t.recoil},
+       {"terms.buoyancy", t.buoyancy},
+       {"terms.gravity", t.gravity}}};
+  for (const auto& [key, on] : forces) {
+    const int layer = document.layer(key);
+    if (on && document.given(key) && !document.resolved.contains(layer) &&
+        document.layer("terms.pressure") <= layer)
+      inert(document, key, "terms.pressure is off and nothing flows", "terms.pressure = true with it");
+  }
 }
 
 }  // namespace
@@ -71,6 +105,7 @@ void check_terms(const Scene& scene, const Document& document) {
       scene.flow.interface_viscosity_solid == 0)
     inert(document, "terms.interface_viscosity", "both its coefficients are 0",
           "flow.interface_viscosity_free or flow.interface_viscosity_solid > 0");
+  check_flowing(scene, document);
   if (!scene.flow.free_surface) {
     const bool any_open = !is_closed(scene.domain);
     if (any_open || t.surface_tension || t.recoil || t.evaporation || t.radiation || scene.laser)

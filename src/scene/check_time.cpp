@@ -50,6 +50,15 @@ void check_partitions(const Scene& scene, const Document& document) {
   }
 }
 
+/// What is never implicit has no place in a method without an explicit part.
+void check_implicit(const Scene& scene, const Document& document) {
+  if (scene.time.integrator.method != Method::implicit_rk) return;
+  const char* term = scene.terms.pressure ? "terms.pressure" : scene.laser ? "a laser" : nullptr;
+  if (term)
+    refuse(document.place("time.method"), "time.method",
+           fmt::format("\"implicit\" with {}, which is explicit", term), "\"imex\" in such a scene");
+}
+
 /// Multirate: conduction in slow steps of constant length, everything else in fast ones between them. The
 /// projection once a step would leave the fast steps without a pressure.
 void check_multirate(const Scene& scene, const Document& document) {
@@ -73,6 +82,7 @@ void check_time(const Scene& scene, const Document& document) {
   const IntegratorOptions& o = scene.time.integrator;
   check_order(scene, document);
   check_partitions(scene, document);
+  check_implicit(scene, document);
   check_multirate(scene, document);
   if (o.fixed_step > scene.time.end)
     refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
@@ -81,6 +91,9 @@ void check_time(const Scene& scene, const Document& document) {
     refuse(document.place("time.fixed_step_s"), "time.fixed_step_s", fmt::format("{}", o.fixed_step),
            fmt::format("at least time.min_step_s = {} [s]", o.min_step));
   if (o.fixed_step > 0) return;
+  if (o.min_step >= scene.time.end)
+    refuse(document.place("time.min_step_s"), "time.min_step_s", fmt::format("{}", o.min_step),
+           fmt::format("less than time.end_s = {} [s]", scene.time.end));
   if (o.min_step >= o.max_step)
     refuse(document.place("time.min_step_s"), "time.min_step_s", fmt::format("{}", o.min_step),
            fmt::format("less than time.max_step_s = {} [s]", o.max_step));

@@ -49,7 +49,9 @@ Key value(const char* name, const char* unit, Range range, double Material::*mem
       range, [member](auto& s, int) -> auto& { return s.material.*member; }, sentence));
 }
 
-Key property(const char* name, const char* unit, Property Material::*member, const char* sentence) {
+/// `of_formula`: values that a formula may take.
+Key property(const char* name, const char* unit, Property Material::*member, const char* sentence,
+             Range of_formula = above(0)) {
   Key k{.path = std::string("material.") + name,
         .kind = Kind::property,
         .unit = unit,
@@ -57,8 +59,8 @@ Key property(const char* name, const char* unit, Property Material::*member, con
         .range = above(0)};
   const std::string allowed = k.allowed();
   k.get = [member](const Scene& s, int) { return write_property(s.material.*member); };
-  k.set = [member, allowed](Scene& s, int, const Value& v) {
-    s.material.*member = read_property(v, above(0), allowed);
+  k.set = [member, of_formula, allowed](Scene& s, int, const Value& v) {
+    s.material.*member = read_property(v, above(0), of_formula, allowed);
   };
   return of_material(std::move(k));
 }
@@ -132,9 +134,10 @@ std::vector<Key> material_keys() {
             "Boiling temperature at one standard atmosphere."),
       value("latent_heat_vaporisation_j_kg", "J/kg", at_least(0), &Material::latent_heat_vaporisation,
             "Latent heat of vaporisation."),
-      value("molar_mass_kg_mol", "kg/mol", at_least(0), &Material::molar_mass, "Molar mass of the vapour."),
+      value("molar_mass_kg_mol", "kg/mol", between(0, 1), &Material::molar_mass, "Molar mass of the vapour."),
       property("viscosity_pa_s", "Pa s", &Material::viscosity, "Dynamic viscosity of the melt."),
-      property("surface_tension_n_m", "N/m", &Material::surface_tension, "Surface tension before its floor."),
+      property("surface_tension_n_m", "N/m", &Material::surface_tension, "Surface tension before its floor.",
+               any()),
       surface_tension_slope(),
       value("surface_tension_floor_n_m", "N/m", at_least(0), &Material::surface_tension_floor,
             "Smallest surface tension; there it no longer depends on temperature.")

@@ -15,7 +15,7 @@ Need recoil_from_vapour() {
 
 std::vector<Key> term_keys() {
   return {
-      boolean("terms.conduction", MELTRAY_AT(terms.conduction), "Heat conduction, 2nd term of Eq. (4)."),
+      boolean("terms.conduction", MELTRAY_AT(terms.conduction), "Heat conduction, 1st term of Eq. (4)."),
       boolean("terms.viscosity", MELTRAY_AT(terms.viscosity),
               "Physical viscosity of the melt, 2nd term of Eq. (3)."),
       of_row(boolean("terms.interface_viscosity", MELTRAY_AT(terms.interface_viscosity),
@@ -45,7 +45,8 @@ std::vector<Key> flow_keys() {
   const Need pressure = term("pressure", &Terms::pressure);
   const Need isph = solved_by(FlowSolver::isph);
   Need interface = term("interface_viscosity", &Terms::interface_viscosity);
-  interface.keys.push_back("model");
+  interface.keys.insert(interface.keys.end(),
+                        {"model", "terms.pressure"});  // of a row, where there is a flow
   return {
       number("flow.pressure_tolerance", "", above_to(0, 0.1), MELTRAY_AT(flow.pressure_tolerance),
              "Relative residual at which the pressure solve ends.")

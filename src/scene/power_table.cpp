@@ -49,11 +49,14 @@ PowerTable from_file(const std::filesystem::path& path) {
   std::string line;
   bool header = false;
   for (int row = 1; std::getline(file, line); ++row) {
+    if (row == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // of spreadsheets: a byte order mark
     line = trimmed(line);
     if (line.empty() || line[0] == '#') continue;
     const std::string where = fmt::format("{} line {}", path.filename().string(), row);
     if (!header) {
-      if (line != "time_s,power_w")
+      std::string names = line;
+      std::erase(names, ' ');
+      if (names != "time_s,power_w")
         throw Refusal{fmt::format("{}: '{}'", where, line), "the header time_s,power_w", {}};
       header = true;
       continue;

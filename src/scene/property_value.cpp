@@ -48,7 +48,19 @@ const Form& form_of(const Table& table, const Value& whole, const std::string& a
   throw Refusal{describe(whole), allowed, {}};
 }
 
-Property from_table(const Value& whole, const std::string& allowed) {
+/// Formulas are monotonous, so that both ends of their range of temperatures are within bounds or one is not;
+/// without ends of its own a formula has to hold where metals are simulated.
+void check_ends(const Property& p, const Range& range) {
+  constexpr double kCold = 1, kHot = 1e4;  // [K]
+  for (const double t : {std::max(p.t_min, kCold), std::min(p.t_max, kHot)})
+    if (!range.contains(p(t)))
+      throw Refusal{fmt::format("{:.6g} at {:.6g} K", p(t), t),
+                    fmt::format("values {} from min_k to max_k ({:g} and {:g} K where not given)",
+                                range.text(), kCold, kHot),
+                    {}};
+}
+
+Property from_table(const Value& whole, const Range& range, const std::string& allowed) {
   const Table& table = *whole.table();
   const Form& form = form_of(table, whole, allowed);
   Property p;
@@ -72,6 +84,7 @@ Property from_table(const Value& whole, const std::string& allowed) {
   if (!missing.empty()) throw Refusal{fmt::format("a table without '{}'", missing.front()), allowed, {}};
   if (!(p.t_min < p.t_max))
     throw Refusal{fmt::format("min_k = {}, max_k = {}", p.t_min, p.t_max), "min_k < max_k", {}};
+  check_ends(p, range);
   return p;
 }
 
@@ -84,8 +97,9 @@ std::string property_forms(const Range& range, const std::string& unit) {
       range.text(), unit);
 }
 
-Property read_property(const Value& value, const Range& range, const std::string& allowed) {
-  if (value.table()) return from_table(value, allowed);
+Property read_property(const Value& value, const Range& range, const Range& of_formula,
+                       const std::string& allowed) {
+  if (value.table()) return from_table(value, of_formula, allowed);
   if (!value.is_number()) throw Refusal{describe(value), allowed, {}};
   if (!std::isfinite(value.number())) throw Refusal{describe(value), "finite numbers: " + allowed, {}};
   if (!range.contains(value.number())) throw Refusal{describe(value), allowed, {}};

@@ -12,8 +12,10 @@
 namespace meltray::scene {
 
 std::string property_forms(const Range& range, const std::string& unit);
-/// Throws Refusal; `allowed` is for its message; `range` is that of a constant.
-Property read_property(const Value& value, const Range& range, const std::string& allowed);
+/// `range` is that of a constant, `of_formula` that of a formula's values. Throws Refusal, with `allowed` in
+/// its message.
+Property read_property(const Value& value, const Range& range, const Range& of_formula,
+                       const std::string& allowed);
 Value write_property(const Property& property);
 
 }  // namespace meltray::scene

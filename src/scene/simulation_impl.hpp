@@ -38,9 +38,6 @@ struct Simulation::Impl {
         integrator(scene.time.integrator) {
     model.counters = &counters;
     if (scene.laser) laser.emplace(scene, constants);
-    if (scene.heat.bulk_interval > 0 && constants.any_isothermal)
-      throw UsageError(
-          "heat.bulk_interval_s: found > 0 with a face that holds a temperature; allowed: 0 in such a scene");
     on_surface.assign(particles.size(), 0);
     in_state.assign(particles.size(), 0);
     next_bulk = scene.heat.bulk_interval;

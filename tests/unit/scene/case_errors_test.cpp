@@ -360,3 +360,77 @@ TEST_CASE("case file: combinations without effect") {
       {"no term", replaced(flat, "conduction = true\n", ""), {"terms: found no term that acts"}},
   });
 }
+
+TEST_CASE("case file: terms that nothing flows by") {
+  const std::string heat = added(flat, "terms", "recoil = true\nevaporation = true");
+  all_refused({
+      {"recoil without pressure",
+       heat + "[heat]\ninitial_temperature_k = 2500\n",
+       {"a.toml:16: terms.recoil: found true without effect: terms.pressure is off"}},
+      {"gravity without pressure",
+       added(flat, "terms", "gravity = true"),
+       {"terms.gravity", "terms.pressure = true with it"}},
+      {"pressure where nothing melts",
+       replaced(weld, "melting = true", "melting = false"),
+       {"terms.pressure: found true without effect: nothing is liquid and nothing melts"}},
+  });
+  // Switched off later, on purpose.
+  CHECK(message({"", weld, {}, {"terms.pressure=false"}}) == "(accepted)");
+  CHECK(message({"", weld, {}, {"terms.melting=false"}}) == "(accepted)");
+}
+
+TEST_CASE("case file: properties that leave their range over temperature") {
+  const auto conductivity = [](const std::string& table) {
+    return added(weld, "material", "conductivity_liquid_w_m_k = " + table);
+  };
+  all_refused({
+      {"falls below zero at max_k",
+       conductivity("{form=\"linear\", value=30, slope=-0.05, reference_k=1800, min_k=1800, max_k=3000}"),
+       {"a.toml:17: material.conductivity_liquid_w_m_k: found -30 at 3000 K", "allowed values > 0"}},
+      {"without an end",
+       conductivity("{form=\"linear\", value=30, slope=-0.01, reference_k=1800}"),
+       {"found -52 at 10000 K"}},
+  });
+  const std::string held = "{form=\"linear\", value=30, slope=-0.01, reference_k=1800, max_k=3000}";
+  CHECK(message({"", conductivity(held)}) == "(accepted)");
+  // Surface tension has a floor.
+  CHECK(
+      message(
+          {"", added(weld, "material",
+                     "surface_tension_n_m = {form=\"linear\", value=1.8, slope=-4e-4, reference_k=1811}")}) ==
+      "(accepted)");
+}
+
+TEST_CASE("case file: what a scene cannot do") {
+  const std::string wall = "[faces.x_min]\nkind = \"wall\"\nthermal = \"flux\"\nflux_w_m2 = 1e6\n";
+  all_refused({
+      {"vapour of nothing",
+       added(added(weld, "terms", "evaporation = true"), "material", "molar_mass_kg_mol = 0"),
+       {"a.toml:17: material.molar_mass_kg_mol: found 0 with terms.evaporation"}},
+      {"molar mass in grams",
+       added(weld, "material", "molar_mass_kg_mol = 55.8"),
+       {"material.molar_mass_kg_mol: found 55.8; allowed a number from 0 to 1 [kg/mol]"}},
+      {"flux into cold solid that sleeps",
+       flat + wall + "[heat]\nbulk_interval_s = 1e-5\n",
+       {"heat.bulk_interval_s: found 1e-05 s with a face that heats or cools (faces.x_min.thermal)"}},
+      {"implicit flow",
+       added(weld, "time", "method = \"implicit\""),
+       {"time.method: found \"implicit\" with terms.pressure"}},
+      {"steps longer than the case",
+       added(weld, "time", "min_step_s = 1"),
+       {"time.min_step_s: found 1; allowed less than time.end_s"}},
+      {"a row with buoyancy for a metal without expansion",
+       "model = \"isph\"\n" + replaced(weld, "\"iron\"", "\"ss316\""),
+       {"a.toml:1: model: found \"isph\", a row with buoyancy", "terms.buoyancy = false with it"}},
+  });
+}
+
+TEST_CASE("case file: a row or a material over a resolved case") {
+  const std::string resolved = meltray::scene::write_case(read_case_text(weld, "a.toml"));
+  for (const std::string set : {"model=\"wcsph\"", "material.name=\"aluminium\""}) {
+    const std::string what = message({"", resolved, {}, {set}});
+    INFO(what);
+    CHECK(what.find("over a resolved case") != std::string::npos);
+  }
+  CHECK(message({"", resolved, {}, {"laser.power_w=900"}}) == "(accepted)");
+}
