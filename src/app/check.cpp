@@ -251,10 +251,9 @@ void print_laser(const Scene& s) {
                    s.laser->retrace_interval));
 }
 
-void print_limits_passed(const Scene& s) {
-  const auto found = beyond_known_limits(s);
+void print_warnings(const char* title, const std::vector<std::string>& found) {
   if (found.empty()) return;
-  heading("warning: beyond what validation/studies found stable");
+  heading(title);
   for (const std::string& text : found) fmt::print("  {}\n", text);
 }
 
@@ -284,7 +283,8 @@ int check(const std::filesystem::path& case_file, const std::vector<std::string>
   print_elastic(scene);
   print_laser(scene);
   print_run_time(simulation, step);
-  print_limits_passed(scene);
+  print_warnings("warning: hardly meant", doubtful_settings(scene));
+  print_warnings("warning: beyond what validation/studies found stable", beyond_known_limits(scene));
   return kExitOk;
 }
 

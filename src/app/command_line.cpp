@@ -17,6 +17,8 @@
 namespace meltray::app {
 namespace {
 
+const CLI::Range kThreads(1, 1024);
+
 /// Sub-commands fill their arguments and leave what is to be done in `command`.
 class CommandLine {
  public:
@@ -57,7 +59,7 @@ class CommandLine {
     c->add_flag("--overwrite", run_.overwrite, "Replace a run in --out");
     add_settings(c, run_.set);
     c->add_option("--until", run_.until, "Stop at this time instead of the case's end [s]");
-    c->add_option("--threads", run_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->add_option("--threads", run_.threads, "Threads [default: all cores]")->check(kThreads);
     c->add_flag("--quiet", run_.quiet, "No progress");
     c->callback([this] { command_ = [this] { return run(run_); }; });
   }
@@ -68,7 +70,7 @@ class CommandLine {
     c->add_option("--until", resume_.until, "Go on to this time [s]");
     add_settings(c, resume_.set);
     c->add_option("--out", resume_.out, "New folder of a fork");
-    c->add_option("--threads", resume_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->add_option("--threads", resume_.threads, "Threads [default: all cores]")->check(kThreads);
     c->add_flag("--quiet", resume_.quiet, "No progress");
     c->callback([this] { command_ = [this] { return resume(resume_); }; });
   }
@@ -92,8 +94,7 @@ class CommandLine {
     c->add_flag("--finished", validate_.finished, "Tier 3: compare what has run, start nothing");
     c->add_option("--out", validate_.out,
                   "Tier 3: folder of the runs, which are kept [default: runs/validation]");
-    c->add_option("--threads", validate_.threads, "Tier 3: threads [default: all cores]")
-        ->check(CLI::PositiveNumber);
+    c->add_option("--threads", validate_.threads, "Tier 3: threads [default: all cores]")->check(kThreads);
     c->callback([this] { command_ = [this] { return validate(validate_); }; });
   }
 
@@ -108,7 +109,7 @@ class CommandLine {
       k->add_option("--json", study_.json, "Write the results to this file as well");
       k->add_option("--out", study_.out, "Folder of the results [default: runs/studies/<id>]");
       k->add_flag("--small", study_.small, "The twin that takes seconds");
-      k->add_option("--threads", study_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+      k->add_option("--threads", study_.threads, "Threads [default: all cores]")->check(kThreads);
       k->callback([this, kind] {
         study_.kind = kind;
         command_ = [this] { return study(study_); };
@@ -139,11 +140,11 @@ class CommandLine {
         ->delimiter(',')
         ->check(CLI::IsMember({"isph", "wcsph", "wcsph_reduced", "wcsph_reduced_interface"}));
     c->add_option("--seeds", paper_.seeds, "1: the lattice; n: n disturbed lattices")
-        ->check(CLI::PositiveNumber);
-    c->add_option("--until", paper_.until, "End of every run [s]")->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 1000));
+    c->add_option("--until", paper_.until, "End of every run [s]")->check(CLI::Range(1e-12, 1e3));
     c->add_option("--out", paper_.out, "Folder of runs and results [default: runs/paper]");
     c->add_flag("--list", paper_.list, "Only print the commands that are still to run, for a batch system");
-    c->add_option("--threads", paper_.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+    c->add_option("--threads", paper_.threads, "Threads [default: all cores]")->check(kThreads);
     c->callback([this] { command_ = [this] { return study_paper(paper_); }; });
   }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "meltray/scene/closed_box.hpp"
@@ -83,6 +85,41 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
         "flow.elastic_modulus_scale: {:g} in a weld; with the whole modulus the solid of aluminium "
         "ran away after 0.2 ms, at half the step too: {:g} or less",
         s.flow.elastic_modulus_scale, kWeldModulus));
+  return found;
+}
+
+std::vector<std::string> doubtful_settings(const Scene& s) {
+  std::vector<std::string> found;
+  if (!s.laser || s.domain.bodies.empty()) return found;
+  double top = -1e300, end = -1e300;
+  for (const Body& body : s.domain.bodies) {
+    const bool box = body.shape == ShapeKind::box;
+    top = std::max(top, std::min(box ? body.max[2] : body.center[2] + body.radii[2], s.domain.max[2]));
+    end = std::max(end, std::min(box ? body.max[0] : body.center[0] + body.radii[0], s.domain.max[0]));
+  }
+  if (std::abs(top) > s.domain.spacing)
+    found.push_back(
+        fmt::format("the top of the bodies is at z = {:g} m; depths are measured from z = 0", top));
+  constexpr double kHeadRoom = 5;  // spacings
+  if (s.domain.max[2] - top < kHeadRoom * s.domain.spacing)
+    found.push_back(
+        fmt::format("domain.max_m: {:g} m above the bodies; less than {:g} spacings, in which melt and light "
+                    "find no free surface",
+                    s.domain.max[2] - top, kHeadRoom));
+  const double last =
+      s.laser->beam.start_x + s.laser->beam.feed * std::min(s.time.end, s.laser->beam.off_time);
+  if (last > end)
+    found.push_back(
+        fmt::format("the beam leaves the bodies: it ends at x = {:g} m, they at {:g} m", last, end));
+  const Material& m = s.material;
+  // Of metals that are welded, magnesium to tungsten, with a margin.
+  const std::array<std::tuple<const char*, double, double, double>, 3> usual = {
+      {{"density_kg_m3", m.density, 1e3, 2.5e4},
+       {"heat_capacity_solid_j_kg_k", m.heat_capacity_solid, 100, 3000},
+       {"heat_capacity_liquid_j_kg_k", m.heat_capacity_liquid, 100, 3000}}};
+  for (const auto& [name, value, low, high] : usual)
+    if (value < low || value > high)
+      found.push_back(fmt::format("material.{}: {:g}; metals have {:g} to {:g}", name, value, low, high));
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/repository.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/nearest.hpp"
@@ -19,12 +20,14 @@ namespace {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
-/// Case files in ./cases; a file without a title is a base that others include.
+/// The case files that come with the program; a file without a title is a base that others include.
 Lines cases() {
   namespace fs = std::filesystem;
   std::error_code error;
+  fs::path folder = repository_folder("cases", "MELTRAY_CASES");
+  if (const fs::path near = fs::proximate(folder); *near.begin() != "..") folder = near;
   std::vector<fs::path> files;
-  for (const auto& item : fs::directory_iterator("cases", error))
+  for (const auto& item : fs::directory_iterator(folder, error))
     if (item.path().extension() == ".toml") files.push_back(item.path());
   std::sort(files.begin(), files.end());
   Lines lines;
@@ -36,7 +39,7 @@ Lines cases() {
       lines.emplace_back(file.string(), fmt::format("cannot be read: {}", e.what()));
     }
   }
-  if (lines.empty()) lines.emplace_back("(none)", "no case files in the folder ./cases");
+  if (lines.empty()) lines.emplace_back("(none)", fmt::format("no case files in {}", folder.string()));
   return lines;
 }
 
@@ -53,8 +56,15 @@ Lines terms() {
       {"conduction", "Eq. (4), heat conduction; enthalpy; auto"},
       {"viscosity", "Eq. (3), physical viscosity of the melt; velocity; auto"},
       {"interface_viscosity", "sect. 2.2.2, viscosity at free surface and solid; velocity; auto"},
+      {"artificial_viscosity", "sect. 2.2.2, between particles that approach, WCSPH; velocity; explicit"},
       {"pressure",
-       "Eq. (6), incompressible projection; velocity; projected after each step (or in every stage)"},
+       "Eq. (6), incompressible projection; velocity; after each step (or in every stage). Or Eqs. (2), (5), "
+       "equation "
+       "of state: WCSPH, flow.solver = \"wcsph\"; velocity, density; explicit"},
+      {"flow.density_diffusion", "Eq. (2) of WCSPH, diffusion of density noise; density; explicit"},
+      {"flow.thermal_expansion", "Eq. (7) of WCSPH, reference density over temperature; density; explicit"},
+      {"flow.solid", "Eq. (9), \"elastic\": thermoelastic solid; stress, density, velocity; explicit"},
+      {"flow.shifting", "keeps particles evenly spread; position, velocity; explicit"},
       {"surface_tension", "sect. 2.1, continuum surface force or surface pressure; velocity; explicit"},
       {"marangoni", "sect. 2.1, force along the surface where tension changes with T; velocity; explicit"},
       {"wetting", "sect. 2.1, contact angle on the solid; normal of the surface; explicit"},

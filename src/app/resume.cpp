@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/run_loop.hpp"
 #include "app/signals.hpp"
@@ -24,10 +25,16 @@ void warn(const std::vector<std::string>& warnings) {
 
 /// A fork keeps its particles, so it cannot change what they were made from.
 void check_fork(const std::vector<std::string>& set) {
-  for (const auto& s : set)
-    if (s.starts_with("domain.") || s.starts_with("material"))
+  for (const auto& s : set) {
+    const std::string key = s.substr(0, s.find('='));
+    const bool face = key.starts_with("faces.") && (key.ends_with(".kind") || key.ends_with(".velocity_m_s"));
+    if (face || key.starts_with("domain.") || key.starts_with("material") || key.starts_with("bodies") ||
+        key == "heat.initial_temperature_k")
       throw UsageError(
-          fmt::format("--set {}: a fork keeps its particles; domain and material need a new run", s));
+          fmt::format("--set {}: a fork keeps its particles; domain, bodies, walls, material and what they "
+                      "start with need a new run",
+                      s));
+  }
 }
 
 /// Loads a checkpoint into a simulation that was made from the same particles.
@@ -66,6 +73,7 @@ int fork(const ResumeArguments& arguments) {
 
   observe::RunFolder::Options where;
   where.out = arguments.out;
+  where.fork = true;
   auto folder = observe::RunFolder::create(where);
   write_case_file(folder, scene);
   fs::copy_file(source.file("history.csv"), folder.file("history.csv"));
@@ -80,6 +88,8 @@ int fork(const ResumeArguments& arguments) {
 
 int resume(const ResumeArguments& arguments) {
   use_threads(arguments.threads);
+  if (arguments.until && !std::isfinite(*arguments.until))
+    throw UsageError(fmt::format("--until {}: a finite time is needed [s]", *arguments.until));
   if (arguments.out) return fork(arguments);
   if (!arguments.set.empty())
     throw UsageError("--set changes the run: give the new one a folder of its own with --out DIR");
@@ -93,7 +103,8 @@ int resume(const ResumeArguments& arguments) {
   const double end = arguments.until.value_or(scene.time.end);
   const std::string outcome = observe::recorded_outcome(folder.path());
   const double done = observe::recorded_time(folder.path());
-  if (checkpoint && (outcome == "finished" || outcome == "stopped") && end <= done * (1 + 1e-9)) {
+  const bool ended = outcome == "finished" || outcome == "stopped";
+  if (checkpoint && (ended || arguments.until) && end <= done * (1 + 1e-9)) {
     tell(arguments.quiet, fmt::format("{}: {} at t = {:.9g} s; nothing to do (--until goes further)",
                                       folder.path().string(), outcome, done));
     return kExitOk;
@@ -127,13 +138,20 @@ int resume(const ResumeArguments& arguments) {
     if (!checkpoint->header.scheduled)
       tell(arguments.quiet,
            "no scheduled checkpoint: going on from the one written when the run was stopped; the result "
-           "differs "
-           "from the uninterrupted run by round-off (output.checkpoint_interval sets scheduled ones)");
+           "differs from the uninterrupted run by round-off (output.checkpoint_interval_s sets scheduled "
+           "ones)");
   } else {
-    tell(arguments.quiet, "no scheduled checkpoint yet: starting again from t = 0");
+    // Not silent in any case: what has been simulated is lost.
+    fmt::print(
+        stderr,
+        "meltray: no scheduled checkpoint (output.checkpoint_interval_s) was reached before the run stopped "
+        "at "
+        "t = {:.9g} s: starting again from t = 0, as only this gives the result of the uninterrupted run\n",
+        std::max(done, 0.0));
     state.case_fingerprint = fingerprint(scene);
     std::error_code ignored;
-    fs::remove(folder.file("history.csv"), ignored);
+    for (const char* file : {"history.csv", "checkpoint-a.h5", "checkpoint-b.h5"})
+      fs::remove(folder.file(file), ignored);
     fs::remove_all(folder.file("particles"), ignored);
     fs::create_directory(folder.file("particles"));
   }

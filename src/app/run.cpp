@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -18,7 +19,8 @@ int run(const RunArguments& arguments) {
   use_threads(arguments.threads);
   scene::Scene scene = scene::read_case(arguments.case_file, arguments.set);
   const double end = arguments.until.value_or(scene.time.end);
-  if (!(end > 0)) throw UsageError(fmt::format("--until {}: a time after 0 is needed", end));
+  if (!(end > 0) || !std::isfinite(end))
+    throw UsageError(fmt::format("--until {}: a finite time after 0 is needed [s]", end));
   scene.time.end = std::max(scene.time.end, end);
 
   observe::RunFolder::Options where;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "meltray/core/parallel.hpp"
+#include "meltray/scene/elastic.hpp"
 
 namespace meltray::app {
 namespace {
@@ -20,6 +21,10 @@ constexpr double kPoolWidth = 2, kPoolLength = 4, kDepthPerPower = 1e-6;  // the
 constexpr double kSecondsPerParticleStep = 4e-6, kSecondsPerWeldParticleStep = 1.4e-5;
 /// The same of a weakly compressible scene without a laser: two passes over the octets.
 constexpr double kSecondsPerSoundParticleStep = 1.5e-6;
+/// Of one fast step of three stages, and how many of them a slow step of the cases has.
+constexpr double kSecondsPerFastParticleStep = 2.3e-6, kUsualFastSteps = 3;
+/// A weld in elastic solid over one in fixed solid: its solid near the melt is two to three times as much.
+constexpr double kElasticWeld = 3;
 constexpr double kSecondsPerLaserStep = 1.5e-2, kShareOfLimit = 0.5;
 
 /// Liquid particles to expect: those at the start, or a pool of a stated size where a laser melts solid.
@@ -53,8 +58,13 @@ void print_run_time(const Simulation& simulation, double step) {
     line("unknown", "no limit sets the step before the run: error control does");
     return;
   }
-  const double steps = s.time.end / dt,
-               seconds = steps * (count * cost + (s.laser ? kSecondsPerLaserStep : 0.0)) / threads();
+  const double steps = s.time.end / dt;
+  double core = steps * (count * cost + (s.laser ? kSecondsPerLaserStep : 0.0));
+  // A slow step of a weld has some three fast ones; what is more of them comes on top.
+  if (s.time.integrator.method == Method::multirate && step > 0 && dt / step > kUsualFastSteps)
+    core += (s.time.end / step - kUsualFastSteps * steps) * count * kSecondsPerFastParticleStep;
+  if (s.laser && scene::is_elastic(s)) core *= kElasticWeld;
+  const double seconds = core / threads();
   line("steps", fmt::format("{:.3g} of {:.3g} s", steps, dt));
   line("particles that cost", fmt::format("{:.3g}", count));
   line("stated cost of a step",

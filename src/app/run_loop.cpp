@@ -50,7 +50,7 @@ void RunState::archive(Archive& a) {
 
 std::string fingerprint(scene::Scene scene) {
   scene.time.end = 1;
-  return fmt::format("{:016x}", observe::fnv1a(scene::write_case(scene)));
+  return fmt::format("{:016x}", observe::fnv1a(scene::case_values(scene)));
 }
 
 void write_case_file(const observe::RunFolder& folder, const scene::Scene& scene) {
@@ -85,6 +85,7 @@ RunLoop::RunLoop(scene::Simulation& simulation, observe::RunFolder& folder, obse
       snapshots_(folder.path(), simulation.time() * (1 + kSameTime)),
       progress_(options_.quiet, simulation.time(), options_.end),
       began_(std::chrono::steady_clock::now()),
+      scheduled_time_(simulation.time()),
       start_time_(simulation.time()),
       wall_before_(state_.wall_seconds) {
   auto rows = observe::read_history(folder.file("history.csv"));
@@ -121,6 +122,9 @@ int RunLoop::run() {
     return finish();
   } catch (const NumericalFailure& e) {
     record_failure(e.what());
+    if (checkpoint_time_ < 0)
+      throw NumericalFailure(
+          fmt::format("{}\nno state could be saved in {}", e.what(), folder_.path().string()));
     throw NumericalFailure(fmt::format(
         "{}\nstate saved in {} (t = {:.9g} s); go on from it with other settings:\n  meltray resume {} --set "
         "KEY=VALUE --out DIR",
@@ -183,14 +187,20 @@ int RunLoop::finish() {
 }
 
 int RunLoop::stop_by_signal(int signal) {
-  const int code = signal == SIGTERM ? kExitTerminated : kExitInterrupted;
-  const char* name = signal == SIGTERM ? "terminated" : "interrupted";
+  const int code = signal == SIGINT ? kExitInterrupted : kExitTerminated;
+  const char* name = signal == SIGINT ? "interrupted" : "terminated";
   if (checkpoint_time_ < simulation_.time()) write_checkpoint(false);
   write_seam();
   write_summary(name, code);
   folder_.release_space();
+  const std::string folder = folder_.path().string();
   say(fmt::format("{} at t = {:.6g} ms, checkpoint written; go on with\n  meltray resume {}", name,
-                  1e3 * simulation_.time(), folder_.path().string()));
+                  1e3 * simulation_.time(), folder));
+  if (simulation_.scene().output.checkpoint_interval > 0 && scheduled_time_ < simulation_.time())
+    say(fmt::format(
+        "which goes back to t = {:.6g} ms, where the uninterrupted run can be followed; on from here:\n"
+        "  meltray resume {} --out DIR",
+        1e3 * scheduled_time_, folder));
   return code;
 }
 
@@ -268,6 +278,7 @@ void RunLoop::write_checkpoint(bool scheduled) {
     state_.archive(a);
   });
   checkpoint_time_ = header.time;
+  if (scheduled) scheduled_time_ = header.time;
   log_.info(fmt::format("checkpoint at t = {:.9g} s, step {}", header.time, header.step));
   if (scheduled) {
     write_seam();

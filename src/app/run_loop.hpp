@@ -92,6 +92,7 @@ class RunLoop {
   double density_sum_ = 0;  ///< of the density variation over the rows of history.csv
   std::int64_t rows_ = 0;
   double checkpoint_time_ = -1;  ///< of the newest checkpoint
+  double scheduled_time_ = 0;    ///< of the last scheduled one, or where this session began
   bool warned_of_density_ = false;
   /// Bytes by part when the last row was written.
   std::vector<std::pair<std::string, std::size_t>> memory_;

@@ -71,7 +71,7 @@ std::optional<std::uint64_t> field(std::string_view text, std::string_view key, 
   std::uint64_t v = 0;
   const char* begin = text.data() + at + key.size();
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), v, base);
-  if (error != std::errc() || *end != '\n') return std::nullopt;
+  if (error != std::errc() || end == text.data() + text.size() || *end != '\n') return std::nullopt;
   return v;
 }
 
@@ -172,6 +172,8 @@ std::optional<Checkpoint> CheckpointSlots::newest(bool prefer_scheduled, std::ve
         best_slot = slot;
       }
     } catch (const UsageError& e) {
+      complaints.emplace_back(e.what());
+    } catch (const IoError& e) {  // the other slot may be readable
       complaints.emplace_back(e.what());
     }
   }

@@ -100,7 +100,7 @@ void empty_out(const fs::path& path) {
   }
 }
 
-void check_explicit(const fs::path& path, bool overwrite) {
+void check_explicit(const fs::path& path, bool overwrite, bool fork) {
   if (!fs::exists(path)) return;
   if (!fs::is_directory(path)) throw UsageError(fmt::format("--out {}: not a folder", path.string()));
   if (fs::is_empty(path)) return;
@@ -108,6 +108,8 @@ void check_explicit(const fs::path& path, bool overwrite) {
     throw UsageError(fmt::format(
         "--out {}: not empty and not a run folder of meltray: left alone; choose another", path.string()));
   if (overwrite) return;
+  if (fork)
+    throw UsageError(fmt::format("--out {}: holds a run; choose another for the fork", path.string()));
   const std::string outcome = recorded_outcome(path);
   if (!is_finished(outcome))
     throw UsageError(
@@ -136,7 +138,7 @@ RunFolder RunFolder::create(const Options& options) {
   fs::path path;
   if (options.out) {
     path = *options.out;
-    check_explicit(path, options.overwrite);
+    check_explicit(path, options.overwrite, options.fork);
     make_directory(path);
   } else {
     path = make_default(options.runs, options.case_name);

@@ -26,9 +26,10 @@ bool is_written(const Key& key, const Scene& scene, int index) {
   return !value.is_number() || key.range.contains(value.number());
 }
 
-std::string line(const Key& key, const Scene& scene, int index) {
+std::string line(const Key& key, const Scene& scene, int index, bool comments) {
   std::string text = fmt::format("{} = {}", key.name(), to_toml(key.get(scene, index)));
   if (key.is_alias) text = "# " + text;
+  if (!comments) return text + "\n";
   std::string comment = key.sentence;
   if (!key.unit.empty()) comment = fmt::format("[{}] {}", key.unit, comment);
   if (const Need* lacking = key.inactive(scene, index))
@@ -36,10 +37,8 @@ std::string line(const Key& key, const Scene& scene, int index) {
   return fmt::format("{:<36} # {}\n", text, comment);
 }
 
-}  // namespace
-
-std::string write_case(const Scene& scene) {
-  std::string out = kHeader;
+std::string write_keys(const Scene& scene, bool comments) {
+  std::string out;
   const auto& keys = all_keys();
   for (auto first = keys.begin(); first != keys.end();) {
     const std::string section = first->section();
@@ -48,7 +47,7 @@ std::string write_case(const Scene& scene) {
     for (int i = 0; i < count_of(*first, scene); ++i) {
       std::string lines;
       for (auto key = first; key != last; ++key)
-        if (is_written(*key, scene, i)) lines += line(*key, scene, i);
+        if (is_written(*key, scene, i)) lines += line(*key, scene, i, comments);
       if (lines.empty()) continue;
       if (section == "bodies.*")
         out += "\n[[bodies]]\n";
@@ -59,6 +58,16 @@ std::string write_case(const Scene& scene) {
     first = last;
   }
   return out;
+}
+
+}  // namespace
+
+std::string write_case(const Scene& scene) {
+  return kHeader + write_keys(scene, true);
+}
+
+std::string case_values(const Scene& scene) {
+  return write_keys(scene, false);
 }
 
 }  // namespace meltray::scene

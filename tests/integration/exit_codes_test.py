@@ -26,7 +26,9 @@ class Usage(Scratch):
                                    (("run", WELD, "--threads", "0"), "--threads"),
                                    (("run", WELD, "--threads", "many"), "--threads"),
                                    (("run", WELD, "--until", "-1"), "--until"),
+                                   (("run", WELD, "--threads", "1000000"), "--threads"),
                                    (("run", WELD, "--until", "nan"), "--until"),
+                                   (("run", WELD, "--until", "inf"), "--until"),
                                    (("resume", "nowhere"), "nowhere: no such run folder"),
                                    (("validate", "--tier", "4"), "allowed 1, 2 or 3"),
                                    (("validate", "--tier", "1", "--commands"), "allowed welds of tier 3"),
@@ -56,10 +58,34 @@ class Usage(Scratch):
         done = meltray("resume", folder, "--set", "laser.power_w=1")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--out DIR", done.stderr)
-        done = meltray("resume", folder, "--set", "domain.spacing_m=1e-4", "--out", self.folder / "fork")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("a fork keeps its particles", done.stderr)
-        self.assertFalse((self.folder / "fork").exists())
+        for setting in ("domain.spacing_m=1e-4", "bodies.0.temperature_k=500", "heat.initial_temperature_k=500",
+                        "faces.z_min.kind=free"):
+            done = meltray("resume", folder, "--set", setting, "--out", self.folder / "fork")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("a fork keeps its particles", done.stderr)
+            self.assertFalse((self.folder / "fork").exists())
+
+    def test_resume_until_a_time_that_has_passed_does_nothing(self):
+        folder = run(WELD, self.folder / "run", "--until", "1e-5")
+        before = files(folder)
+        done = meltray("resume", folder, "--until", "5e-6")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("nothing to do", done.stdout)
+        self.assertEqual(files(folder), before)
+
+    def test_new_start_is_never_silent(self):
+        """Where only a new start gives the result of the uninterrupted run, --quiet says so as well."""
+        folder = run(WELD, self.folder / "run", "--until", "1e-5")
+        done = meltray("resume", folder, "--until", "1.5e-5", "--quiet")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("starting again from t = 0", done.stderr)
+
+    def test_compare_tells_both_depths_and_goes_on_past_a_run_without_them(self):
+        folder = run(WELD, self.folder / "run", "--until", "1e-5")
+        measured = self.write("measured.csv", "material,f_hz,mean_depth_mm\nIron,100,2.1\n")
+        done = meltray("compare", folder, folder, "--measured", measured)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("run ")]), 3)
 
 
 class Folders(Scratch):

@@ -18,6 +18,7 @@ class RunFolder {
     bool overwrite = false;
     std::string case_name;                ///< default folder: runs/<case_name>, then -002, ...
     std::filesystem::path runs = "runs";  ///< where default folders are made
+    bool fork = false;                    ///< of another run: nothing there may be replaced
   };
 
   /// Makes and locks the folder of a new run. UsageError: see the contract of --out and --overwrite; also

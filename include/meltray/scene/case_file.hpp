@@ -24,7 +24,10 @@ std::string case_title(const std::filesystem::path& file);
 /// The scene as a case file with every key, defaults included; read_case() of the text gives the same scene.
 std::string write_case(const Scene& scene);
 
-/// The same from text; `name` stands for the file in messages. Used for case.toml inside checkpoints.
+/// Keys and values of write_case() alone, which no change of its comments changes: to tell cases apart.
+std::string case_values(const Scene& scene);
+
+/// read_case() of a text; `name` stands for the file in messages. Used for case.toml inside checkpoints.
 Scene read_case_text(const std::string& text, const std::string& name, const Overrides& overrides = {});
 
 /// Declared keys as a Markdown reference page (name, type, unit, default, allowed range, one sentence).

@@ -102,3 +102,28 @@ TEST_CASE("a full box whose particles are not shifted, or not where they rest, i
   s.flow.shifting_speed = 0.1;
   CHECK(beyond_known_limits(s).empty());
 }
+
+TEST_CASE("settings of a weld that are hardly meant are named") {
+  scene::Scene s;
+  s.domain.spacing = 5e-5;
+  s.domain.max = Vec3(2e-3, 1e-3, 1e-3);
+  s.domain.bodies.resize(1);
+  s.domain.bodies[0].max = Vec3(2e-3, 1e-3, 0);
+  s.time.end = 1e-3;
+  s.material = material_by_name("iron");
+  CHECK(doubtful_settings(s).empty());  // without a laser nothing is said
+  s.laser.emplace();
+  s.laser->beam.feed = 1;
+  CHECK(doubtful_settings(s).empty());
+  s.laser->beam.start_x = 1.5e-3;
+  REQUIRE(doubtful_settings(s).size() == 1);
+  CHECK(doubtful_settings(s)[0].starts_with("the beam leaves the bodies"));
+  s.laser->beam.off_time = 4e-4;
+  CHECK(doubtful_settings(s).empty());
+  s.material.density = 7.8;
+  REQUIRE(doubtful_settings(s).size() == 1);
+  CHECK(doubtful_settings(s)[0].starts_with("material.density_kg_m3: 7.8"));
+  s.material.density = 7800;
+  s.domain.bodies[0].max[2] = s.domain.max[2];
+  CHECK(doubtful_settings(s).size() == 2);  // top above z = 0, no head room
+}
