@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
@@ -62,6 +63,12 @@ double Beam::power(double t) const {
          std::sin(2 * constants::pi * spec_.frequency * t + spec_.phase_deg * constants::pi / 180);
   if (spec_.modulation == Modulation::table) p = table_power(spec_.table, t);
   return std::max(p, 0.0);
+}
+
+double Beam::next_switch(double t) const {
+  for (const double at : {spec_.on_time, spec_.off_time})
+    if (at > t) return at;
+  return std::numeric_limits<double>::infinity();
 }
 
 Vec3 Beam::axis() const {

@@ -4,6 +4,7 @@
 
 #include "meltray/core/parallel.hpp"
 #include "meltray/particles/patch.hpp"
+#include "particles/sorted_list.hpp"
 
 /// Solid that moves: which it is, and the cells that it moves through.
 namespace meltray {
@@ -62,9 +63,8 @@ void PatchSelector::follow(const Particles& particles, const Patch& patch) {
     if (patch.elastic[k] != static_cast<std::uint8_t>(Elastic::free)) continue;
     const Index i = patch.global[k], from = grid_.cell(before, i), to = grid_.cell(after, k);
     if (from == to) continue;
-    auto &left = resting_[from], &entered = resting_[to];
-    left.erase(std::lower_bound(left.begin(), left.end(), i));
-    entered.insert(std::lower_bound(entered.begin(), entered.end(), i), i);
+    erase_sorted(resting_[from], i);
+    insert_sorted(resting_[to], i);
   }
 }
 

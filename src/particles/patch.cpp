@@ -8,6 +8,7 @@
 #include "meltray/core/collect.hpp"
 #include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
+#include "particles/sorted_list.hpp"
 
 namespace meltray {
 
@@ -39,15 +40,13 @@ PatchSelector::PatchSelector(const CellGrid& grid, const Particles& particles) :
 }
 
 void PatchSelector::melted(const Particles& particles, Index i) {
-  auto& cell = resting_[grid_.cell(view(particles.x), i)];
-  cell.erase(std::lower_bound(cell.begin(), cell.end(), i));
-  moving_.insert(std::lower_bound(moving_.begin(), moving_.end(), i), i);
+  erase_sorted(resting_[grid_.cell(view(particles.x), i)], i);
+  insert_sorted(moving_, i);
 }
 
 void PatchSelector::solidified(const Particles& particles, Index i) {
-  auto& cell = resting_[grid_.cell(view(particles.x), i)];
-  cell.insert(std::lower_bound(cell.begin(), cell.end(), i), i);
-  moving_.erase(std::lower_bound(moving_.begin(), moving_.end(), i));
+  insert_sorted(resting_[grid_.cell(view(particles.x), i)], i);
+  erase_sorted(moving_, i);
 }
 
 void PatchSelector::select_all(const Particles& particles, Patch& patch) {
@@ -173,14 +172,14 @@ void PatchSelector::fill(const Particles& particles, Patch& patch) {
 }
 
 std::size_t PatchSelector::bytes() const {
-  std::size_t n =
-      held_bytes(resting_, moving_, core_, marked_, moves_, moving_cell_, moving_sorted_, moving_start_);
+  std::size_t n = held_bytes(resting_, moving_, core_, marked_, marked_cells_, moves_, moving_cell_,
+                             moving_sorted_, moving_start_);
   for (const auto& cell : resting_) n += held_bytes(cell);
   return n;
 }
 
 std::size_t Patch::bytes() const {
-  return held_bytes(global, cell_start, h, mass, smoothing, pressure, density, liquid, wall, elastic) +
+  return held_bytes(global, cells, cell_start, h, mass, smoothing, pressure, density, liquid, wall, elastic) +
          held_bytes(x) + held_bytes(v) + held_bytes(stress);
 }
 

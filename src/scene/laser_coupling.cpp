@@ -40,7 +40,9 @@ LaserCoupling::LaserCoupling(const Scene& scene, const terms::SceneConstants& co
       ray_count_(scene.laser->trace.ray_error, scene.laser->trace.rays) {}
 
 bool LaserCoupling::due(double t) const {
-  return stale_ || t >= next_trace_ || motion_ > scene_.laser->retrace_motion * constants_.spacing;
+  const double near = scene_.laser->retrace_motion * constants_.spacing;
+  return stale_ || t >= next_trace_ || motion_ > near || (beam_.focus(t) - traced_focus_).norm() > near ||
+         (beam_.power(t) > 0) != (ledger_.in > 0);
 }
 
 laser::Box LaserCoupling::region(double t, const Particles& particles, const PatchSelector& selector) const {
@@ -73,6 +75,7 @@ laser::Box LaserCoupling::region(double t, const Particles& particles, const Pat
 void LaserCoupling::trace(double t, const PatchSelector& selector, const Particles& particles) {
   stale_ = false;
   motion_ = 0;
+  traced_focus_ = beam_.focus(t);
   next_trace_ = t + scene_.laser->retrace_interval;
   const laser::Box box = region(t, particles, selector);
   const double beyond = 3 * constants_.spacing;
@@ -153,8 +156,8 @@ void LaserCoupling::book(double dt) {
   budget_.dropped += dt * ledger_.dropped;
 }
 
-LaserState LaserCoupling::state(double t) const {
-  return {beam_.power(t), ledger_.absorbed, ledger_.escaped, ledger_.residual};
+LaserState LaserCoupling::state() const {
+  return {ledger_.in, ledger_.absorbed, ledger_.escaped, ledger_.residual};
 }
 
 void LaserCoupling::archive(Archive& a) {

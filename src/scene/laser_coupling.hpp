@@ -15,7 +15,8 @@ class LaserCoupling {
  public:
   LaserCoupling(const Scene& scene, const terms::SceneConstants& constants);
 
-  /// True where a trace is due: the interval has passed, the surface or the beam has moved, or none was made.
+  /// True where a trace is due: the interval has passed, the surface or the beam has moved, the beam went on
+  /// or off, or none was made.
   bool due(double t) const;
   /// Reconstructs the surface around the beam and traces the rays.
   void trace(double t, const PatchSelector& selector, const Particles& particles);
@@ -30,7 +31,7 @@ class LaserCoupling {
   const laser::Tracer& tracer() const { return tracer_; }
   const laser::Beam& beam() const { return beam_; }
   const LaserBudget& budget() const { return budget_; }
-  LaserState state(double t) const;
+  LaserState state() const;
   double undeposited() const { return undeposited_; }  ///< [W] at the last deposit
   void add_motion(double m) { motion_ += m; }
   /// Saving and loading force a new trace at the next step.
@@ -51,6 +52,7 @@ class LaserCoupling {
   laser::Ledger ledger_;
   LaserBudget budget_;
   std::vector<Index> lit_;
+  Vec3 traced_focus_ = Vec3::Zero();  ///< of the last trace [m]
   double next_trace_ = 0, motion_ = 0, undeposited_ = 0;
   double lost_ = 0;  ///< power of hits at no finite place [W]
   bool stale_ = true;

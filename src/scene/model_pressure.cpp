@@ -148,7 +148,7 @@ std::vector<StepLimit> Model::step_limits() {
   const Time& time = scene_.time;
   const double h = constants_.smoothing, rho = constants_.density;
   // The explicit relaxation of the divergence, div v / tau: beyond tau it overshoots.
-  if (flows() && scene_.flow.projection == Projection::stage)
+  if (flows() && !weakly_compressible() && scene_.flow.projection == Projection::stage)
     limits.push_back({divergence_time, "divergence"});
   if (flows() && !stage.moving.empty()) {
     const double speed = largest_speed(stage.moving, false);

@@ -136,6 +136,7 @@ void Simulation::Impl::choose_partitions(double longest) {
 StepInfo Simulation::Impl::step(double t_stop) {
   begin();
   if (!prepared) prepare();
+  if (laser) t_stop = std::min(t_stop, laser->beam().next_switch(time));
   model.pack(y, fields);
   if (counters.steps % kPartitionSteps == 0) choose_partitions(t_stop - time);
   StepReport report;
@@ -154,8 +155,8 @@ StepInfo Simulation::Impl::step(double t_stop) {
   write_back(model.patch, particles);
   written = true;
   update_temperatures();
-  change_phases();
   if (model.flows()) remove_escaped();
+  change_phases();
   if (scene.heat.bulk_interval > 0 && scene.terms.conduction) exchange_bulk(time);
   note_motion(report.dt);
   prepare();

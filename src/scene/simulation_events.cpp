@@ -37,6 +37,7 @@ void Simulation::Impl::change_phases() {
                solidus = constants.material.enthalpy_solidus();
   for (Index i : model.stage.heated) {
     const Index g = model.patch.global[i];
+    if (particles.has(g, kRemoved)) continue;
     const double h = model.patch.h[i];
     if (!model.patch.liquid[i] && h >= liquidus) {
       selector.melted(particles, g);

@@ -84,7 +84,7 @@ LaserBudget Simulation::laser_budget() const {
   return impl_->laser ? impl_->laser->budget() : LaserBudget{};
 }
 LaserState Simulation::laser_state() const {
-  return impl_->laser ? impl_->laser->state(impl_->time) : LaserState{};
+  return impl_->laser ? impl_->laser->state() : LaserState{};
 }
 
 Counters Simulation::counters() const {

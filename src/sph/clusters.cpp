@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/clusters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "meltray/core/errors.hpp"
 #include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/sph/pairs.hpp"
@@ -234,11 +237,17 @@ void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, doubl
   });
   start_.assign(rows.groups() + 1, 0);
   Index group = 0;
+  std::int64_t octets_listed = 0;
   for (const Block& b : found)
     for (const Index n : b.count) {
-      start_[group + 1] = start_[group] + n;
-      ++group;
+      octets_listed += n;
+      start_[++group] = static_cast<Index>(octets_listed);
     }
+  if (octets_listed > std::numeric_limits<Index>::max())
+    throw NumericalFailure(
+        fmt::format("list of octets: {} entries, more than 32-bit numbers can tell apart: fewer "
+                    "particles or a smaller domain.smoothing_ratio",
+                    octets_listed));
   octet_.resize(start_[group]);
 #pragma omp parallel for schedule(static)
   for (Index b = 0; b < blocks; ++b)

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "meltray/core/errors.hpp"
 #include "meltray/core/memory.hpp"
 #include "sph/eight_candidates.hpp"
 
@@ -176,8 +179,16 @@ void PairList::place_rows(Index begin, Index end) {
       pairs_ += b.count[r];
     }
   start_[begin] = 0;
-  for (Index i = begin; i < end; ++i)
-    start_[i + 1] = start_[i] + (count_[i] + kLaneCount - 1) / kLaneCount * kLaneCount;
+  std::int64_t places = 0;
+  for (Index i = begin; i < end; ++i) {
+    places += (count_[i] + kLaneCount - 1) / kLaneCount * kLaneCount;
+    start_[i + 1] = static_cast<Index>(places);
+  }
+  if (places > std::numeric_limits<Index>::max())
+    throw NumericalFailure(
+        fmt::format("pair list: {} places, more than 32-bit numbers can tell apart: fewer particles "
+                    "or a smaller domain.smoothing_ratio",
+                    places));
   resize_anew(j_, start_[end]);
 }
 

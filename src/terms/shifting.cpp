@@ -19,6 +19,7 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
       using Kernel = decltype(kernel);
       const ConstField v = view(static_cast<const Patch*>(s.patch)->v);
       const double* const volume = s.volume.data();
+      const double second_moment = s.constants->lattice.second_moment;
       const double inverse_w = 1 / Kernel::w(s.constants->spacing, 1 / s.constants->smoothing);
       parallel_for(static_cast<std::ptrdiff_t>(s.moving.size()), [&](std::ptrdiff_t k) {
         const Index i = s.moving[k];
@@ -55,7 +56,7 @@ void Shifting::add_rates(const Stage& s, const MutField& transport, const MutFie
           for (int c = 0; c < D; ++c) out[c] = g * (p.of(v[c]) - v[c][i]);
           return out;
         });
-        for (int c = 0; c < D; ++c) acceleration[c][i] += gain[c];
+        for (int c = 0; c < D; ++c) acceleration[c][i] += gain[c] / second_moment;
       });
     });
   });

@@ -95,6 +95,12 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
           sum -= sph::load(d_of + p.k) * p.r2();
         });
         d_sum_[i] = sph::sum(sum);
+        if (pairs.next_to_wall()[i])  // slip faces do not drag
+          pairs.for_row<D>(i, [&](const sph::Pair<D>& p) {
+            if (!s.patch->wall[p.j] || s.constants->faces[s.patch->wall[p.j] - 1].no_slip) return;
+            d_sum_[i] += d_of[p.k] * p.r2();
+            d_of[p.k] = 0;
+          });
       }
     });
   });

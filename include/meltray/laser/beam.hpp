@@ -45,9 +45,10 @@ class Beam {
   /// Throws UsageError where the description makes no beam (no spot, level or upward rays, bad table).
   explicit Beam(BeamSpec spec);
   const BeamSpec& spec() const { return spec_; }
-  double power(double t) const;                     ///< [W], never negative
-  Vec3 axis() const;                                ///< unit vector of propagation (downwards)
-  Vec3 focus(double t) const;                       ///< where the axis meets the focal plane [m]
+  double power(double t) const;        ///< [W], never negative
+  double next_switch(double t) const;  ///< time after t when it goes on or off; infinity: none [s]
+  Vec3 axis() const;                   ///< unit vector of propagation (downwards)
+  Vec3 focus(double t) const;          ///< where the axis meets the focal plane [m]
   double radius(double distance_from_focus) const;  ///< beam radius at a distance along the axis [m]
   /// `count` rays of equal power power(t)/count, stratified over the profile by a low-discrepancy sequence,
   /// starting above z = start_height. Sets of other numbers (>= 0) have their rays at other places, evenly

@@ -117,7 +117,7 @@ class Simulation {
   Timers& timers();
   double evaporative_loss() const;  ///< [W] at the last step
   std::size_t liquid_count() const;
-  std::size_t active_count() const;  ///< particles in the state vector
+  std::size_t active_count() const;  ///< particles that flow or exchange heat, without elastic solid
   std::vector<TermInfo> terms() const;
   /// Every step limit of the current state: name -> seconds (before error control).
   std::vector<StepLimit> step_limits();

@@ -19,7 +19,7 @@ struct CsrView {
 };
 
 /// Sparse Cholesky factorisation (CHOLMOD) of a symmetric positive definite matrix: the exact answer that
-/// iterative solvers are judged by, and the solver of small scenes.
+/// iterative solvers are judged by in tests.
 class CholeskySolver {
  public:
   CholeskySolver();

@@ -103,6 +103,15 @@ TEST_CASE("viscosity: a slip wall does not pull, a solid holds the melt") {
   s.prepare(Vec3(0, 0, -3 * kDx), max, {true, true, false});
   for (Index i = 0; i < s.patch.size(); ++i) s.patch.v[0][i] = s.patch.wall[i] ? 0.0 : 1.0;
   CHECK(test::largest(test::acceleration(s, physical(s))) < 1e-9 * kNu / (kDx * kDx));
+  // Melt in the ramp above its melting point, where the interface viscosity of solids is at work.
+  s.set_temperature([](const Vec3&) { return 1815.0; });
+  ViscousOperator interface;
+  interface.assemble(s.stage, {false, true}, {1, 1, 50, 50});
+  CHECK(test::largest(test::acceleration(s, interface)) < 1e-9 * kNu / (kDx * kDx));
+  s.constants.faces[4].no_slip = true;
+  interface.assemble(s.stage, {false, true}, {1, 1, 50, 50});
+  CHECK(test::largest(test::acceleration(s, interface)) > kNu / (kDx * kDx));
+  s.set_temperature([](const Vec3&) { return 2000.0; });
 
   // Solid below z = 3 dx at rest: its particles are points of the profile with velocity zero.
   for (Index i = 0; i < s.patch.size(); ++i)
