@@ -14,8 +14,8 @@
 
 namespace meltray {
 
-/// CHOLMOD's workspace and factor. The matrix is scaled symmetrically to a diagonal between 1/2 and 2, by
-/// powers of two so that no digit changes: the pivots then tell how singular it is, whatever its units.
+/// CHOLMOD's workspace and factor. The matrix is scaled symmetrically to a diagonal of order one, by powers
+/// of two so that no digit changes: the pivots then tell how singular it is, whatever its units.
 struct CholeskySolver::Impl {
   cholmod_common common;
   cholmod_factor* factor = nullptr;
