@@ -56,6 +56,7 @@ const IntegratorOptions& validated(const IntegratorOptions& o) {
   return o;
 }
 
+/// Why an attempt failed; empty where it did not.
 std::string cause(const Attempt& a) {
   switch (a.outcome) {
     case Outcome::inaccurate:
@@ -85,7 +86,6 @@ struct Integrator::Impl {
   void prepare(const OdeProblem& problem);
   Wish first_wish(OdeProblem& problem, double t, double t_stop, N_Vector y, const StepLimit& limit);
   Wish choose(OdeProblem& problem, double t, double t_stop, N_Vector y);
-  void require_possible(const Wish& wish, double t, const Attempt& last) const;
 
   IntegratorOptions options;
   Context context;
@@ -116,7 +116,7 @@ void Integrator::Impl::prepare(const OdeProblem& problem) {
     stepper = std::make_unique<integration::ForwardBackwardEuler>(space, now, counters);
   else if (options.method == Method::multirate)
     stepper = std::make_unique<integration::MultirateDriver>(context.get(), space, tableau, now,
-                                                             options.fast_step, counters);
+                                                             options.fast_step, options.min_step, counters);
   else if (!tableau.implicit_half)
     stepper = std::make_unique<integration::ExplicitDriver>(space, tableau, now, controls_error(), counters);
   else
@@ -154,23 +154,11 @@ Wish Integrator::Impl::first_wish(OdeProblem& problem, double t, double t_stop, 
 Wish Integrator::Impl::choose(OdeProblem& problem, double t, double t_stop, N_Vector y) {
   if (options.fixed_step > 0) return {options.fixed_step, "fixed"};
   const StepLimit limit = problem.stable_step(t, integration::entries(y));
-  if (!(limit.seconds > 0))
-    throw NumericalFailure(
-        fmt::format("stability limit '{}' is {} s at t = {:.9g} s", limit.name, limit.seconds, t));
+  integration::require_limit(limit, t);
   Wish wish = control.wish().length > 0 ? control.wish() : first_wish(problem, t, t_stop, y, limit);
   if (options.max_step < wish.length) wish = {options.max_step, "maximum"};
   if (limit.seconds < wish.length) wish = {limit.seconds, limit.name};
   return wish;
-}
-
-void Integrator::Impl::require_possible(const Wish& wish, double t, const Attempt& last) const {
-  const double clock = std::nextafter(std::abs(t), 1e300) - std::abs(t);
-  if (wish.length >= options.min_step && wish.length > clock) return;
-  const std::string why =
-      last.outcome == Outcome::done ? fmt::format("limited by '{}'", wish.reason) : cause(last);
-  throw NumericalFailure(
-      fmt::format("time step of {:.3g} s at t = {:.9g} s is below the smallest allowed ({:.3g} s): {}",
-                  wish.length, t, std::max(options.min_step, clock), why));
 }
 
 StepReport Integrator::Impl::step(OdeProblem& problem, std::span<const StateField> fields, double t,
@@ -189,7 +177,7 @@ StepReport Integrator::Impl::step(OdeProblem& problem, std::span<const StateFiel
   Attempt last;
   Wish wanted = choose(problem, t, t_stop, start);
   for (;;) {
-    require_possible(wanted, t, last);
+    integration::require_possible(wanted, options.min_step, t, cause(last));
     const Wish now = integration::land(wanted, t, t_stop);
     last = stepper->advance(now.length, y_new.get());
     if (last.outcome == Outcome::done) {

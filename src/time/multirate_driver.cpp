@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "meltray/core/errors.hpp"
+#include "time/step_control.hpp"
 
 namespace meltray::integration {
 namespace {
@@ -64,11 +65,13 @@ struct MultirateDriver::Callbacks {
 };
 
 MultirateDriver::MultirateDriver(SUNContext context, VectorSpace& space, const Tableau& fast,
-                                 const Parts& parts, double fast_step, IntegratorCounters& counters)
+                                 const Parts& parts, double fast_step, double min_step,
+                                 IntegratorCounters& counters)
     : space_(space),
       fast_(fast),
       parts_(parts),
       largest_fast_step_(fast_step),
+      min_step_(min_step),
       counters_(counters),
       stage_(space.take()) {
   message_.reserve(1024);
@@ -152,11 +155,19 @@ bool MultirateDriver::advance_fast(double from, double to, N_Vector y) {
   return true;
 }
 
+double MultirateDriver::fast_limit(OdeProblem& problem, double t, N_Vector y) const {
+  const StepLimit limit = largest_fast_step_ > 0 ? StepLimit{largest_fast_step_, "fast step"}
+                                                 : problem.stable_step(t, entries(y));
+  require_limit(limit, t);
+  require_possible({limit.seconds, limit.name}, min_step_, t);
+  return limit.seconds;
+}
+
 void MultirateDriver::begin(OdeProblem& problem, double t, N_Vector y) {
   problem_ = &problem;
   t_ = t;
   y_ = y;
-  fast_step_ = largest_fast_step_ > 0 ? largest_fast_step_ : problem.stable_step(t, entries(y)).seconds;
+  fast_step_ = fast_limit(problem, t, y);
 }
 
 Attempt MultirateDriver::advance(double h, N_Vector y_new) {

@@ -25,9 +25,9 @@ class MultirateDriver : public OneStep {
  public:
   /// Everything passed by reference must outlive the driver. `fast` is explicit; its order, 3 or 4, is that
   /// of the slow method too. `fast_step` bounds the fast step [s]; 0: the problem's stability limit at the
-  /// start of each slow step.
+  /// start of each slow step. A bound below `min_step` [s] is a NumericalFailure.
   MultirateDriver(SUNContext context, VectorSpace& space, const Tableau& fast, const Parts& parts,
-                  double fast_step, IntegratorCounters& counters);
+                  double fast_step, double min_step, IntegratorCounters& counters);
   ~MultirateDriver() override;
   MultirateDriver(const MultirateDriver&) = delete;
   MultirateDriver& operator=(const MultirateDriver&) = delete;
@@ -47,13 +47,15 @@ class MultirateDriver : public OneStep {
   void check(int code, const char* call) const;
   bool fast_rate(double t, N_Vector y, N_Vector f);
   bool slow_rate(double t, N_Vector y, N_Vector f);
+  /// Bound of the fast step at the start of a slow one [s].
+  double fast_limit(OdeProblem& problem, double t, N_Vector y) const;
   /// Advances y by fast steps of equal length with the forcing that stands for the slow part.
   bool advance_fast(double from, double to, N_Vector y);
 
   VectorSpace& space_;
   const Tableau& fast_;
   const Parts parts_;
-  const double largest_fast_step_;
+  const double largest_fast_step_, min_step_;
   IntegratorCounters& counters_;
   std::vector<OwnedVector> rates_;  // of the fast stages
   OwnedVector stage_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "time/step_control.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "meltray/core/errors.hpp"
 
@@ -25,6 +26,20 @@ Wish land(const Wish& wish, double t, double t_stop) {
     return {rest, rest < wish.length * (1 - kSame) ? std::string_view("output") : wish.reason};
   if (rest < 2 * wish.length * (1 - kSame)) return {rest / 2, "output"};
   return wish;
+}
+
+void require_limit(const StepLimit& limit, double t) {
+  if (!(limit.seconds > 0))
+    throw NumericalFailure(
+        fmt::format("stability limit '{}' is {} s at t = {:.9g} s", limit.name, limit.seconds, t));
+}
+
+void require_possible(const Wish& wish, double min_step, double t, const std::string& cause) {
+  const double clock = std::nextafter(std::abs(t), 1e300) - std::abs(t);
+  if (wish.length >= min_step && wish.length > clock) return;
+  throw NumericalFailure(fmt::format(
+      "time step of {:.3g} s at t = {:.9g} s is below the smallest allowed ({:.3g} s): {}", wish.length, t,
+      std::max(min_step, clock), cause.empty() ? fmt::format("limited by '{}'", wish.reason) : cause));
 }
 
 Wish StepController::after_rejection(double dt, double error, int exponent) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "meltray/core/archive.hpp"
@@ -17,6 +18,13 @@ struct Wish {
 /// Length that ends on t_stop without a tiny last step: all of the rest where it fits, half of it where it is
 /// less than two steps. The reason becomes "output" where this shortens the step.
 Wish land(const Wish& wish, double t, double t_stop);
+
+/// Throws NumericalFailure where a stability limit at time t is not a length.
+void require_limit(const StepLimit& limit, double t);
+
+/// Throws NumericalFailure where a wish is below min_step or would not move the clock; the message gives the
+/// cause, or the wish's reason where there is none.
+void require_possible(const Wish& wish, double min_step, double t, const std::string& cause = {});
 
 /// PI controller of the step length (Gustafsson 1991; Hairer and Wanner II, sect. IV.2):
 /// dt_new = dt * safety * error^(-0.7/k) * previous error^(0.4/k), k the power of dt in the error estimate.

@@ -72,6 +72,31 @@ TEST_CASE("multirate: what makes no sense is refused") {
   CHECK_THROWS_AS(integrator.step(problem, fields, 0, 1, y), UsageError);
 }
 
+TEST_CASE("multirate: a limit of the fast step that is no step fails with its name") {
+  using Catch::Matchers::Contains;
+  struct Limited : test::Manufactured {
+    double limit = 0;
+    StepLimit stable_step(double, const double*) override { return {limit, "sound"}; }
+  } problem;
+  IntegratorOptions o;
+  o.method = Method::multirate;
+  o.order = 3;
+  o.fixed_step = 0.1;
+  o.min_step = 1e-3;
+  const auto fields = test::one_field(2, 1e-6, 1e-6);
+  std::vector<double> y{1.0, 1.0};
+  const auto step = [&] { return Integrator(o).step(problem, fields, 0, 1, y); };
+  problem.limit = GENERATE(0.0, -1.0, std::nan(""), 0.9e-3);
+  CHECK_THROWS_AS(step(), NumericalFailure);
+  CHECK_THROWS_WITH(step(), Contains("'sound'"));
+  CHECK(y == std::vector<double>{1.0, 1.0});
+  // Shorter slow stages make shorter fast steps than their limit: what counts is the limit.
+  problem.limit = 1.1e-3;
+  CHECK(step().dt == o.fixed_step);
+  o.fast_step = 0.9e-3;
+  CHECK_THROWS_AS(step(), NumericalFailure);
+}
+
 TEST_CASE("multirate: NaN in either part fails the step with a message") {
   struct Broken : test::Manufactured {
     bool slow = false;
