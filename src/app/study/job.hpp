@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,6 +22,11 @@ struct Job {
   bool small;  ///< the twin that takes seconds
   Cells& cells;
 
+  /// How many seeds are run, 0 where the scene has none. Two are the least that have a spread.
+  std::size_t seeds() const {
+    const std::size_t all = definition.seeds.size();
+    return small ? std::min<std::size_t>(2, all) : all;
+  }
   /// The scene with overrides. With fixed steps its tolerances only tell Newton's method when to stop: they
   /// are then tight, so that the error is that of the steps.
   scene::Scene scene(const scene::Overrides& overrides = {}) const;

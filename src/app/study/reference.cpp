@@ -26,23 +26,22 @@ std::vector<double> halved_steps(double longest, int halvings) {
 
 Cell run_seeds(const Job& job, const scene::Overrides& overrides, std::vector<Quantities>* single) {
   if (job.definition.seeds.empty()) return job.run(overrides);
-  // Two seeds are the least that have a spread.
-  const std::size_t count = job.small ? 2 : job.definition.seeds.size();
+  constexpr std::int64_t Cell::*kCounts[] = {&Cell::steps, &Cell::rejected, &Cell::evaluations,
+                                             &Cell::iterations, &Cell::pressure_iterations};
   std::vector<Quantities> runs;
   Cell sum;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < job.seeds(); ++k) {
     const Cell c = job.run(joined(overrides, {fmt::format("domain.seed={}", job.definition.seeds[k])}));
     if (!c.finished) return c;
     runs.push_back(c.quantities);
-    const auto n = static_cast<std::int64_t>(count);
-    sum.steps += c.steps / n;
-    sum.rejected += c.rejected / n;
-    sum.evaluations += c.evaluations / n;
-    sum.iterations += c.iterations / n;
-    sum.pressure_iterations += c.pressure_iterations / n;
-    sum.seconds += c.seconds / static_cast<double>(count);
-    sum.cpu_seconds += c.cpu_seconds / static_cast<double>(count);
+    for (auto count : kCounts) sum.*count += c.*count;
+    sum.seconds += c.seconds;
+    sum.cpu_seconds += c.cpu_seconds;
   }
+  const auto n = static_cast<double>(job.seeds());
+  for (auto count : kCounts) sum.*count = std::llround(static_cast<double>(sum.*count) / n);
+  sum.seconds /= n;
+  sum.cpu_seconds /= n;
   sum.finished = true;
   sum.quantities = mean(runs);
   if (single != nullptr) *single = runs;

@@ -83,9 +83,8 @@ class Study {
     for (std::size_t q = 0; q < r.quantities.size(); ++q) {
       const double error = cell.finished ? relative_error(cell.quantities[q], r.quantities[q]) : NAN;
       const bool chaotic = !job_.definition.seeds.empty();
-      const double known = chaotic
-                               ? r.spread[q] / std::sqrt(static_cast<double>(job_.definition.seeds.size()))
-                               : kReferenceFactor * r.uncertainty[q];
+      const double known = chaotic ? r.spread[q] / std::sqrt(static_cast<double>(job_.seeds()))
+                                   : kReferenceFactor * r.uncertainty[q];
       const bool trusted = std::isfinite(error) && error >= known;
       findings_.rows.push_back({{"spacing_m", scene.domain.spacing},
                                 {"projection", v.model},
