@@ -65,10 +65,19 @@ class Studies(Scratch):
         self.assertRegex(words, "auto chooses .*: (agrees|differs)")
 
     def test_stability(self):
-        found, words = self.study("stability", "static_pool", "--parameter", "recoil")
-        self.assertEqual({r["verdict"] for r in found["rows"]} - {"stable", "degraded", "failed"}, set())
-        usual = [r for r in found["rows"] if r["step_factor"] == 1]
-        self.assertTrue(all(r["verdict"] == "stable" for r in usual), usual)
+        """The weld holds with its own steps and breaks down with steps eight times as long; the number of a seed does not make it
+        expect more speed."""
+        found, words = self.study("stability", "weld", "--parameter", "seed")
+        usual, long = ([r for r in found["rows"] if r["step_factor"] == factor] for factor in (1, 8))
+        self.assertEqual([r["verdict"] for r in usual], ["stable", "stable"], usual)
+        broken = [r for r in found["rows"] if r["verdict"] != "stable"]
+        self.assertTrue(broken, long)
+        for row in broken:
+            self.assertIn(row["verdict"], ("degraded", "failed"))
+            self.assertIn(f"{row['verdict']}: {row['reason']}", words)
+        as_it_is = usual[0]["top_speed_m_s"]  # the case has seed 1
+        for row in long:
+            self.assertFalse(row["verdict"] == "stable" and row["top_speed_m_s"] > 3 * as_it_is, row)
 
     def test_a_case_of_ones_own(self):
         case = REPOSITORY / "validation" / "studies" / "drop.toml"

@@ -17,16 +17,26 @@ namespace {
 constexpr double kEnergyBound = 1e-6, kMomentumBound = 1e-6;
 constexpr double kAtLimitBound = 0.01;  ///< share of pressure solves that end at their limit of iterations
 constexpr double kClampedBound = 1e-3;  ///< share of the steps of all liquid particles
-constexpr double kSpeedBound = 3;       ///< times the largest speed of the case as it is, times the factor
+constexpr double kSpeedBound = 3;       ///< times the largest speed that is expected
 constexpr double kUndershoot = 5;       ///< below the lowest temperature of the case as it is [K]
 constexpr std::int64_t kMostSteps = 50000;
+
+/// How a speed grows with what drives it: with the root of a pressure; with a force while the melt still
+/// gathers speed, as in the short scene of natural convection; with the power at most, whose recoil sets in
+/// at the boiling point.
+constexpr double kByPressure = 0.5, kFromRest = 1, kByPower = 1, kNoDrive = 0;
 
 /// A number of the scene that the map varies.
 struct Parameter {
   std::string name;
   std::vector<double> factors;
+  double exponent;  ///< of the factor in the speed that is expected, 0 where it does not drive the flow
   bool (*applies)(const scene::Scene&);
   void (*scale)(scene::Scene&, double factor);
+
+  /// Speed that is expected at a factor, over that of the case as it is. Less drive does not make it smaller:
+  /// something else may drive the flow, too.
+  double speed(double factor) const { return std::pow(std::max(1.0, factor), exponent); }
 };
 
 void scale(Property& p, double factor) {
@@ -42,6 +52,7 @@ const std::vector<Parameter>& parameters() {
   using scene::Scene;
   static const std::vector<Parameter> all = {{"power",
                                               {0.25, 0.5, 1, 2, 4},
+                                              kByPower,
                                               [](const Scene& s) { return s.laser.has_value(); },
                                               [](Scene& s, double f) {
                                                 s.laser->beam.power *= f;
@@ -50,6 +61,7 @@ const std::vector<Parameter>& parameters() {
                                               }},
                                              {"surface_tension",
                                               {0.1, 0.3, 1, 3, 10},
+                                              kByPressure,
                                               [](const Scene& s) { return s.terms.surface_tension; },
                                               [](Scene& s, double f) {
                                                 scale(s.material.surface_tension, f);
@@ -57,6 +69,7 @@ const std::vector<Parameter>& parameters() {
                                               }},
                                              {"recoil",
                                               {0.25, 0.5, 1, 2, 4},
+                                              kByPressure,
                                               [](const Scene& s) { return s.terms.recoil; },
                                               [](Scene& s, double f) {
                                                 s.surface.recoil_pressure *= f;
@@ -64,6 +77,7 @@ const std::vector<Parameter>& parameters() {
                                               }},
                                              {"viscosity_ratio",
                                               {0.01, 0.1, 1, 10, 100},
+                                              kNoDrive,
                                               [](const Scene& s) { return s.terms.interface_viscosity; },
                                               [](Scene& s, double f) {
                                                 s.flow.interface_viscosity_free *= f;
@@ -71,10 +85,12 @@ const std::vector<Parameter>& parameters() {
                                               }},
                                              {"buoyancy",
                                               {0.1, 1, 10, 100},
+                                              kFromRest,
                                               [](const Scene& s) { return s.terms.buoyancy; },
                                               [](Scene& s, double f) { s.domain.gravity *= f; }},
                                              {"jitter",
                                               {0.01, 0.1, 0.2, 0.3, 0.4},
+                                              kNoDrive,
                                               [](const Scene&) { return true; },
                                               [](Scene& s, double f) {
                                                 s.domain.arrangement = scene::Arrangement::jittered;
@@ -82,6 +98,7 @@ const std::vector<Parameter>& parameters() {
                                               }},
                                              {"seed",
                                               {1, 2, 3, 4, 5},
+                                              kNoDrive,
                                               [](const Scene&) { return true; },
                                               [](Scene& s, double f) {
                                                 if (s.domain.arrangement != scene::Arrangement::jittered)
@@ -114,8 +131,8 @@ struct Verdict {
   std::string word, reason;
 };
 
-/// `usual`: the case as it is.
-Verdict judge(const Cell& cell, const Cell& usual, double factor) {
+/// `usual`: the case as it is; `speed`: what is expected over its speed.
+Verdict judge(const Cell& cell, const Cell& usual, double speed) {
   if (!cell.finished) return {"failed", failed_term(cell.failure)};
   if (!(cell.energy_error <= kEnergyBound))
     return {"degraded", fmt::format("energy budget {:.1e}", cell.energy_error)};
@@ -129,7 +146,7 @@ Verdict judge(const Cell& cell, const Cell& usual, double factor) {
   if (clamped > kClampedBound)
     return {"degraded", fmt::format("{} particles clamped or removed, {:.2g} % of all steps of particles",
                                     cell.clamped, 100 * clamped)};
-  if (usual.finished && cell.top_speed > kSpeedBound * std::max(1.0, factor) * usual.top_speed)
+  if (usual.finished && cell.top_speed > kSpeedBound * speed * usual.top_speed)
     return {"degraded", fmt::format("speed {:.3g} m/s", cell.top_speed)};
   if (usual.finished && cell.lowest_temperature < usual.lowest_temperature - kUndershoot)
     return {"degraded", fmt::format("temperature {:.0f} K", cell.lowest_temperature)};
@@ -168,7 +185,7 @@ Findings stability(const Job& job, const std::string& name) {
     for (double factor : factors)
       for (double step_factor : step_factors) {
         const Cell cell = cell_of(factor, step_factor, false);
-        const Verdict verdict = judge(cell, usual, factor);
+        const Verdict verdict = judge(cell, usual, parameter.speed(factor));
         ++count[verdict.word == "stable" ? 0 : verdict.word == "degraded" ? 1 : 2];
         if (verdict.word != "stable")
           out.conclusions.push_back(fmt::format("{} {:.3g}, dx {:.3g} m, steps x{}: {}: {}", parameter.name,
