@@ -17,13 +17,23 @@ KILLS = int(os.environ.get("MELTRAY_KILLS", "5"))
 SEED = int(os.environ.get("MELTRAY_SEED", "1"))
 
 
-def wait_for_write(folder, process, seconds):
-    """Waits `seconds`, then until a file is being written (its .part exists); False when the process has ended."""
+def half_written(folder):
+    """Names of the files that are being written, or were when the process died."""
+    return [name for f in (folder, folder / "particles") if f.is_dir() for name in os.listdir(f) if name.endswith(".part")]
+
+
+def stop_in_write(folder, process, seconds):
+    """Waits `seconds`, then until the process stands still in the middle of a write; False when it has ended before. A file that
+    was seen may be complete a moment later: what counts is what is there once nothing moves any more."""
     time.sleep(seconds)
     while process.poll() is None:
-        names = [name for f in (folder, folder / "particles") if f.is_dir() for name in os.listdir(f)]
-        if any(name.endswith(".part") for name in names):
+        if not half_written(folder):
+            continue
+        process.send_signal(signal.SIGSTOP)
+        state = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        if state.si_code == os.CLD_STOPPED and half_written(folder):
             return True
+        process.send_signal(signal.SIGCONT)
     return False
 
 
@@ -99,7 +109,7 @@ class Restart(Scratch):
             while kills < KILLS:
                 wait = chance.uniform(0.02, 0.6) * self.seconds
                 if kills % 2:
-                    writing = wait_for_write(folder, process, wait)
+                    writing = stop_in_write(folder, process, wait)
                 else:
                     time.sleep(wait)
                     writing = False
@@ -113,9 +123,9 @@ class Restart(Scratch):
                 process = start("resume", folder, "--quiet", "--threads", str(chance.choice([1, 2])))
             self.assertEqual(process.wait(), 0)
             self.assert_same_results(self.reference, folder, f"chain {chains}, seed {SEED}")
-            parts = [p.name for p in folder.rglob("*.part")]
-            self.assertFalse(parts, "half-written files are left over")
+            self.assertFalse(half_written(folder), "half-written files are left over")
         print(f"{kills} kills in {chains} runs, {writes} of them while a file was written", flush=True)
+        self.assertEqual(writes, KILLS // 2)
 
     def test_signals(self):
         for number, code, outcome in ((signal.SIGTERM, 143, "terminated"), (signal.SIGINT, 130, "interrupted")):
