@@ -17,6 +17,12 @@ KILLS = int(os.environ.get("MELTRAY_KILLS", "5"))
 SEED = int(os.environ.get("MELTRAY_SEED", "1"))
 
 
+def wait_for_summary(folder, process):
+    """Until the first summary is there: only from then on a run that dies has all that belongs to it, its name included."""
+    while not (folder / "summary.json").exists() and process.poll() is None:
+        time.sleep(0.001)
+
+
 def half_written(folder):
     """Names of the files that are being written, or were when the process died."""
     return [name for f in (folder, folder / "particles") if f.is_dir() for name in os.listdir(f) if name.endswith(".part")]
@@ -106,6 +112,7 @@ class Restart(Scratch):
             chains += 1
             folder = self.folder / f"killed-{chains}"
             process = start("run", WELD, "--out", folder, "--quiet", "--threads", "1")
+            wait_for_summary(folder, process)
             while kills < KILLS:
                 wait = chance.uniform(0.02, 0.6) * self.seconds
                 if kills % 2:
@@ -145,8 +152,7 @@ class Restart(Scratch):
     def test_signal_before_the_first_scheduled_checkpoint(self):
         folder = self.folder / "early"
         process = start("run", WELD, "--out", folder, "--quiet", "--threads", "1")
-        while not (folder / "summary.json").exists() and process.poll() is None:
-            time.sleep(0.001)
+        wait_for_summary(folder, process)
         process.terminate()
         self.assertEqual(process.wait(), 143)
         self.assertLess(summary(folder)["time_s"], 2e-5)
