@@ -14,7 +14,7 @@ namespace {
 
 using Tensor = Eigen::Matrix3d;
 
-constexpr double kBulk = 160e9, kShear = 80e9;
+constexpr double kBulk = 160e9, kShear = 80e9, kSoundOfMelt = 40;
 /// Distances of pairs are kept in single precision, 6e-8 relative; a corner of a jittered block loses a
 /// digit.
 constexpr double kSingle = 1e-6;
@@ -42,6 +42,12 @@ struct Block : StageSetup {
     fill(Vec3::Zero(), size, 300, false);
     dummies(0, Vec3::Zero(), size, 300, 0.3);
     constants.faces[0].no_slip = no_slip;
+    start();
+  }
+  /// Two particles of spacing 0.1 in x, the first of them solid.
+  explicit Block(bool melt) : StageSetup(3, 0.1) {
+    add(Vec3::Zero(), 300, false);
+    add(Vec3(0.1, 0, 0), melt ? 2000 : 300, melt);
     start();
   }
   void start() {
@@ -86,6 +92,18 @@ struct Block : StageSetup {
     solid.update(stage);
     solid.add_rates(stage, rates);
     return r;
+  }
+  /// Acceleration of the melt in a weakly compressible scene whose speed of sound is 40.
+  Components of_melt(double alpha) {
+    AcousticPass pass;
+    pass.state = {kSoundOfMelt, false, Tension::full};
+    pass.force.form = GradientForm::sum;
+    pass.artificial.alpha = alpha;
+    evaluate(pass);
+    Components a = zeros();
+    std::vector<double> rate(patch.size());
+    pass.add_rates(stage, rate.data(), view(a));
+    return a;
   }
 };
 
@@ -221,17 +239,10 @@ TEST_CASE("heated solid is under the pressure 3 K alpha dT until it expands") {
 TEST_CASE("what the melt does to the solid, the solid does to the melt") {
   const int dim = GENERATE(2, 3);
   Block b(dim, 0.1, dim == 2 ? 0.5 : 0.3);
-  const EquationOfState eos{40, false, Tension::full};
   for (Index i = 0; i < b.patch.size(); ++i)
     if (b.patch.liquid[i]) b.patch.density[i] = b.constants.density * (1 + 0.01 * b.position(i)[1]);
-  AcousticPass pass;
-  pass.state = eos;
-  pass.force.form = GradientForm::sum;
-  b.evaluate(pass);
+  const Components melt = b.of_melt(0);
   const auto r = b.rates(metal());
-  Components melt = b.zeros();
-  std::vector<double> rate(b.patch.size());
-  pass.add_rates(b.stage, rate.data(), view(melt));
   Vec3 on_solid = Vec3::Zero(), on_melt = Vec3::Zero();
   for (Index i = 0; i < b.patch.size(); ++i) {
     on_solid += b.patch.mass[i] * b.vector(r.acceleration, i);
@@ -240,6 +251,59 @@ TEST_CASE("what the melt does to the solid, the solid does to the melt") {
   CHECK(on_solid[0] < 0);
   // The solid takes its pairs from the list, in single precision.
   CHECK((on_solid + on_melt).norm() < 1e-7 * on_solid.norm());
+}
+
+TEST_CASE("artificial viscosity of a pair: in the solid by its sound, with melt by that of the melt") {
+  const bool melt = GENERATE(false, true);
+  const double alpha = 0.3;
+  Block b(melt);
+  const double sign = GENERATE(-1.0, 1.0);  // of the velocity with which the second leaves the first
+  b.set_velocity([&](const Vec3& x) { return x[0] > 0.05 ? Vec3(sign * 2, 1, 0) : Vec3::Zero(); });
+  ElasticSolid solid = metal();
+  (melt ? solid.melt_drag : solid.viscosity) = melt ? alpha * kSoundOfMelt : alpha;
+  const double sound = melt ? kSoundOfMelt : std::sqrt((kBulk + 4 * kShear / 3) / 7000);
+  const double h = 0.13, r = 0.1;
+  const double f = sph::WendlandC2<3>::f(r, 1 / h);
+  // v_ij.x_ij of the first particle is (0 - sign 2)(0 - r).
+  const double along = std::min(sign * 2 * r, 0.0);
+  const double expected =
+      b.cell_mass() * alpha * sound * h * along / (7000 * (r * r + 0.01 * h * h)) * f * -r;
+  const Components of_solid = b.rates(solid).acceleration;
+  const Components of_second = melt ? b.of_melt(alpha) : of_solid;
+  const Index first = b.patch.x[0][0] < 0.05 ? 0 : 1;
+  CHECK(of_solid[0][first] == Approx(expected).epsilon(kSingle));
+  CHECK(of_second[0][1 - first] == Approx(-expected).epsilon(kSingle));
+  CHECK(of_solid[1][first] == 0);
+  if (sign < 0) CHECK(of_solid[0][first] < 0);  // pushed away from the one that comes
+}
+
+TEST_CASE("drag between melt and elastic solid keeps momentum and takes energy") {
+  const int dim = GENERATE(2, 3);
+  Block b(dim, 0.1, dim == 2 ? 0.5 : 0.3);
+  for (Index i = 0; i < b.patch.size(); ++i)
+    if (b.patch.liquid[i]) b.patch.density[i] = b.constants.density * (1 + 0.01 * b.position(i)[1]);
+  // Each body moves as a whole, towards the other and along it: within each there is nothing to slow down.
+  for (Index i = 0; i < b.patch.size(); ++i) {
+    b.patch.v[0][i] = b.patch.liquid[i] ? -2 : 3;
+    b.patch.v[1][i] = b.patch.liquid[i] ? 1 : 0;
+  }
+  const double alpha = 0.3;
+  ElasticSolid with_drag = metal();
+  with_drag.melt_drag = alpha * kSoundOfMelt;
+  const Components melt = b.of_melt(alpha), without_melt = b.of_melt(0);
+  const Components solid = b.rates(with_drag).acceleration, without_solid = b.rates(metal()).acceleration;
+  Vec3 on_solid = Vec3::Zero(), on_melt = Vec3::Zero();
+  double power = 0;
+  for (Index i = 0; i < b.patch.size(); ++i) {
+    const Vec3 by_solid = b.patch.mass[i] * (b.vector(melt, i) - b.vector(without_melt, i));
+    const Vec3 by_melt = b.patch.mass[i] * (b.vector(solid, i) - b.vector(without_solid, i));
+    on_melt += by_solid;
+    on_solid += by_melt;
+    power += (by_solid + by_melt).dot(b.vector(b.patch.v, i));
+  }
+  CHECK(on_solid[0] < 0);
+  CHECK((on_solid + on_melt).norm() < kSingle * on_solid.norm());
+  CHECK(power < 0);
 }
 
 TEST_CASE("artificial stress pushes a close pair apart under tension only") {
