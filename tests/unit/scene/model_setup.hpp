@@ -25,11 +25,13 @@ struct ModelSetup {
 
   void build_lists() {
     selector.select_all(particles, model.patch);
+    if (model.has_elastic_solid()) selector.mark_elastic(particles, model.patch, scene.flow.elastic_depth);
     std::vector<std::uint8_t> extra(model.patch.size());
     for (Index i = 0; i < model.patch.size(); ++i) extra[i] = !model.patch.wall[i];
     model.pairs.build(model.patch, selector.grid(), kSkin * constants.spacing, extra);
     model.stage.heat = extra;
     terms::prepare_stage(model.stage);
+    model.find_pairs(kSkin * constants.spacing, selector.grid().period());
     model.evaluate_patch(0);
   }
 
