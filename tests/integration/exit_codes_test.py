@@ -267,14 +267,14 @@ class NumericalFailures(Scratch):
         self.assertGreater(summary(back)["limiter"]["acoustic"], summary(folder)["limiter"]["acoustic"])
 
     def test_unstable_conduction(self):
-        """Explicit conduction far beyond its stability limit ends at the first particle whose enthalpy runs away. Only forces are
-        named: that conduction did it shows in the numbers of a particle that does not move."""
+        """Explicit conduction far beyond its stability limit ends at the first particle whose enthalpy runs away. Only forces
+        are named: that conduction did it shows in the numbers of a particle that does not move."""
         folder = self.folder / "run"
         done = meltray("run", REPOSITORY / "cases" / "melting_block.toml", "--out", folder, "--quiet", "--set",
                        "time.fixed_step_s=1e-4", "--set", "splitting.conduction=explicit")
         self.assertEqual(done.returncode, 3, done.stderr)
-        found = re.search(r"particle \d+ is not finite or runs away at t = \S+ s .* velocity \(0, 0, 0\) m/s, enthalpy (\S+) J/kg",
-                          done.stderr)
+        found = re.search(r"particle \d+ is not finite or runs away at t = \S+ s .* velocity \(0, 0, 0\) m/s, "
+                          r"enthalpy (\S+) J/kg", done.stderr)
         self.assertTrue(found, done.stderr)
         self.assertGreater(abs(float(found[1])), 1e8)
         # The state that is kept is the one before: hot, and not yet beyond a particle that runs away.

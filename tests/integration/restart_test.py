@@ -29,8 +29,8 @@ def half_written(folder):
 
 
 def stop_in_write(folder, process, seconds):
-    """Waits `seconds`, then until the process stands still in the middle of a write; False when it has ended before. A file that
-    was seen may be complete a moment later: what counts is what is there once nothing moves any more."""
+    """Waits `seconds`, then until the process stands still in the middle of a write; False when it has ended before. A file
+    that was seen may be complete a moment later: what counts is what is there once nothing moves any more."""
     time.sleep(seconds)
     while process.poll() is None:
         if not half_written(folder):

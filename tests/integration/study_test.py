@@ -65,8 +65,8 @@ class Studies(Scratch):
         self.assertRegex(words, "auto chooses .*: (agrees|differs)")
 
     def test_stability(self):
-        """The weld holds with its own steps and breaks down with steps eight times as long; the number of a seed does not make it
-        expect more speed."""
+        """The weld holds with its own steps and breaks down with steps eight times as long; the number of a seed does not
+        make it expect more speed."""
         found, words = self.study("stability", "weld", "--parameter", "seed")
         usual, long = ([r for r in found["rows"] if r["step_factor"] == factor] for factor in (1, 8))
         self.assertEqual([r["verdict"] for r in usual], ["stable", "stable"], usual)
