@@ -69,6 +69,8 @@ class Model : public OdeProblem {
   /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06
   /// m/s^2, ...".
   std::string blame(Index i, double dt);
+  /// The same for its heating: "conduction 3e+12 W/kg, ...".
+  std::string blame_heat(Index i);
   /// Chooses the partition of "auto" terms from their stiffness against the step expected next, where the
   /// method has two sides; multirate methods have conduction on the slow side, which takes the place of the
   /// implicit one.

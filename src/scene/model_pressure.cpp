@@ -189,11 +189,36 @@ std::vector<StepLimit> Model::step_limits() {
   return limits;
 }
 
+std::string Model::blame_heat(Index i) {
+  std::vector<std::pair<double, const char*>> sources;
+  const auto source = [&](const char* name, auto&& add) {
+    terms::Rates rates = cleared_rates();
+    add(rates.heating);
+    sources.emplace_back(heating_[i], name);
+  };
+  terms::Crossings ignored;
+  if (scene_.terms.conduction) {
+    conduction_.assemble(stage);
+    source("conduction", [&](double* heating) { conduction_.add_heating(stage, heating); });
+  }
+  if (scene_.terms.evaporation || scene_.terms.radiation)
+    source("evaporation and radiation", [&](double* heating) { losses_.add_heating(stage, heating, ignored); });
+  if (!laser_power.empty()) sources.emplace_back(laser_power[i] / patch.mass[i], "laser");
+  std::sort(sources.begin(), sources.end(),
+            [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  std::string text = "heating in the last accepted state: ";
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    text += fmt::format("{}{} {:.3g} W/kg", k == 0 ? "" : ", ", sources[k].second, sources[k].first);
+  return text;
+}
+
 StepLimit Model::stable_step(double t, const double* y) {
   evaluate(t, y);
   StepLimit least;
-  for (const StepLimit& limit : step_limits())
+  for (const StepLimit& limit : step_limits()) {
+    if (std::isnan(limit.seconds)) return limit;  // it ends the run
     if (limit.seconds < least.seconds) least = limit;
+  }
   return least;
 }
 

@@ -214,11 +214,14 @@ void Simulation::Impl::check(const StepReport& report) {
       p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first),
       p.pressure[first], model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
   const Index particle = p.global[first];
+  const bool of_heat = !(std::abs(p.h[first]) < kHottest);
   lists_valid = false;
   select();
   model.evaluate_patch(time);
   for (Index i : model.stage.moving)
     if (model.patch.global[i] == particle) text += "; " + model.blame(i, report.dt);
+  for (Index i : model.stage.heated)
+    if (of_heat && model.patch.global[i] == particle) text += "; " + model.blame_heat(i);
   throw NumericalFailure(text);
 }
 

@@ -83,7 +83,8 @@ class Study {
     for (std::size_t q = 0; q < r.quantities.size(); ++q) {
       const double error = cell.finished ? relative_error(cell.quantities[q], r.quantities[q]) : NAN;
       const bool chaotic = !job_.definition.seeds.empty();
-      const double known = chaotic ? r.spread[q] / std::sqrt(static_cast<double>(job_.seeds()))
+      // Of the difference of two means of so many seeds.
+      const double known = chaotic ? r.spread[q] * std::sqrt(2.0 / static_cast<double>(job_.seeds()))
                                    : kReferenceFactor * r.uncertainty[q];
       const bool trusted = std::isfinite(error) && error >= known;
       findings_.rows.push_back({{"spacing_m", scene.domain.spacing},
