@@ -202,7 +202,8 @@ std::string Model::blame_heat(Index i) {
     source("conduction", [&](double* heating) { conduction_.add_heating(stage, heating); });
   }
   if (scene_.terms.evaporation || scene_.terms.radiation)
-    source("evaporation and radiation", [&](double* heating) { losses_.add_heating(stage, heating, ignored); });
+    source("evaporation and radiation",
+           [&](double* heating) { losses_.add_heating(stage, heating, ignored); });
   if (!laser_power.empty()) sources.emplace_back(laser_power[i] / patch.mass[i], "laser");
   std::sort(sources.begin(), sources.end(),
             [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
