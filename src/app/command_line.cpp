@@ -117,9 +117,9 @@ class CommandLine {
       return k;
     };
     add("work-precision", "Error against evaluations and time over methods and steps",
-        "Scene of the studies");
+        "Scene of the studies, or a case file");
     add("splitting", "Order, largest stable step and cost of each assignment of terms",
-        "Scene of the studies");
+        "Scene of the studies, or a case file");
     add("stability", "Where a scene is stable, degraded or fails, over step, resolution and a parameter",
         "Scene of the studies, or a case file")
         ->add_option("--parameter", study_.parameter,

@@ -64,6 +64,20 @@ class Studies(Scratch):
         self.assertIn("recommended for an error of", words)
         self.assertRegex(words, "auto chooses .*: (agrees|differs)")
 
+    def test_case_of_ones_own(self):
+        """The studies in steps take a case file as well: its steps begin at twice the mean of the case as it is."""
+        case = self.write("own.toml", (REPOSITORY / "validation/studies/heat_melting.toml").read_text(encoding="utf-8"))
+        found, words = self.study("splitting", case)
+        self.assertEqual(found["scene"], "own")
+        rows = {r["assignment"]: r for r in found["rows"]}
+        self.assertGreater(rows["implicit conduction"]["order"], 1.5)
+        self.assertGreater(rows["implicit conduction"]["largest_stable_step_s"], 0)
+        self.assertIn("recommended for an error of", words)
+        weak = REPOSITORY / "validation/sound_wave/case.toml"
+        done = meltray("study", "work-precision", weak, "--out", self.folder / "none")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('found flow.solver = "wcsph"', done.stderr)
+
     def test_stability(self):
         """The weld holds with its own steps and breaks down with steps eight times as long; the number of a seed does not
         make it expect more speed."""

@@ -7,6 +7,7 @@
 #include "app/repository.hpp"
 #include "app/script.hpp"
 #include "app/study/job.hpp"
+#include "app/study/own_case.hpp"
 #include "app/threads.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
@@ -54,19 +55,12 @@ std::string json(const StudyArguments& a, const std::string& id, const Findings&
   return document.dump(2) + '\n';
 }
 
-/// A scene of the studies by its id or, for the map of stability, any case file.
-studies::StudyScene scene_of(const StudyArguments& a, fs::path& case_file) {
-  if (a.kind == "stability" && fs::path(a.what).extension() == ".toml") {
-    case_file = a.what;
-    studies::StudyScene own;
-    own.id = case_file.stem().string();
-    return own;
-  }
+/// A scene of the studies by its id.
+studies::StudyScene known_scene(const StudyArguments& a) {
   studies::StudyScene found = studies::study_scene(a.what);
   if (a.kind != "stability" && found.longest_step == 0)
     throw UsageError(
         fmt::format("study {}: found '{}'; allowed for this scene: study stability", a.kind, a.what));
-  case_file = repository_folder("validation", "MELTRAY_VALIDATION") / "studies" / (found.id + ".toml");
   return found;
 }
 
@@ -74,10 +68,16 @@ studies::StudyScene scene_of(const StudyArguments& a, fs::path& case_file) {
 
 int study(const StudyArguments& a) {
   use_threads(a.threads);
-  fs::path case_file;
-  const studies::StudyScene definition = scene_of(a, case_file);
-  const fs::path out = a.out.value_or(fs::path("runs") / "studies" / definition.id);
+  const bool own = fs::path(a.what).extension() == ".toml";
+  const studies::StudyScene known = own ? studies::own_case(a.what) : known_scene(a);
+  const fs::path out = a.out.value_or(fs::path("runs") / "studies" / known.id);
+  const fs::path case_file =
+      own ? fs::path(a.what)
+          : repository_folder("validation", "MELTRAY_VALIDATION") / "studies" / (known.id + ".toml");
+  scene::read_case(case_file);  // a bad file is refused before there is a folder
   studies::Cells cells(out / "cells");
+  const studies::StudyScene definition =
+      own && a.kind != "stability" ? studies::own_case_in_steps(case_file, cells) : known;
   const studies::Job job{definition, case_file, a.small, cells};
   const Findings found = a.kind == "work-precision" ? work_precision(job)
                          : a.kind == "splitting"    ? splitting(job)

@@ -105,7 +105,7 @@ scene::Overrides fixed_step(double step) {
 }
 
 scene::Overrides tolerances(const scene::Scene& s, double factor) {
-  return {fmt::format("time.rtol={}", std::min(0.5, factor * s.time.rtol)),
+  return {"time.fixed_step_s=0", fmt::format("time.rtol={}", std::min(0.5, factor * s.time.rtol)),
           fmt::format("time.atol_position={}", factor * s.time.atol_position),
           fmt::format("time.atol_velocity_m_s={}", factor * s.time.atol_velocity),
           fmt::format("time.atol_temperature_k={}", factor * s.time.atol_temperature)};
