@@ -23,7 +23,7 @@ struct Range {
   bool open_low = false;  ///< `low` itself is not allowed
 
   bool contains(double x) const { return (open_low ? x > low : x >= low) && x <= high; }
-  std::string text() const;  ///< "> 0", "0 to 1"; empty: any
+  std::string text() const;  ///< "> 0", "from 0 to 1"; empty: any
 };
 inline Range any() {
   return {};

@@ -17,7 +17,7 @@ const Face& face(const Scene& s, int i) {
 
 /// A 2-D scene is the x-z plane: it has no faces in y.
 Need has_face() {
-  return {"domain.dimension = 3 (faces in y)", {"domain.dimension"}, [](const Scene& s, int i) {
+  return {"domain.dimension = 3 for faces in y", {"domain.dimension"}, [](const Scene& s, int i) {
             return s.domain.dimension == 3 || (i != 2 && i != 3);
           }};
 }

@@ -76,7 +76,8 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
     constexpr int D = d;
     const ConstField n = view(static_cast<const Components&>(smooth_));
     const double* const surface = s.surface.data();
-    const double tiny = 1e-12 * s.constants->spacing * s.constants->spacing;
+    // Of sum_j W t^2, t the distance in the tangent plane: none where a particle has no neighbour beside it.
+    const double tiny = 1e-12 * std::pow(s.constants->spacing, 2 - D);
     parallel_for(s.size(), [&](Index i) {
       out[i] = 0;
       const double active = s.surface[i] > 0 ? activation(s, i) : 0.0;
@@ -94,7 +95,7 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
         const sph::Lanes weight = p.of(surface) * p.w;
         return std::array<sph::Lanes, 2>{weight * bend, weight * t2};
       });
-      const double kappa = sum[1] > tiny * s.constants->lattice.shepard ? (D - 1) * sum[0] / sum[1] : 0.0;
+      const double kappa = sum[1] > tiny ? (D - 1) * sum[0] / sum[1] : 0.0;
       out[i] = active * s.constants->material.sigma(s.temperature[i]) * kappa;
     });
   });

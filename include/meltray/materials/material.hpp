@@ -51,9 +51,10 @@ struct Material {
   double expansion = 0;                                      ///< volumetric, of the liquid (Boussinesq) [1/K]
   double expansion_reference = 0;                            ///< T_0 of Eq. (8) [K]
   double linear_expansion_solid = 0;                         ///< [1/K]
-  double youngs_modulus = 0, poisson_ratio = 0;
-  double emissivity = 0;
-  double contact_angle_deg = 10;  ///< of the melt on its own solid
+  double youngs_modulus = 0;                                 ///< of the solid [Pa]
+  double poisson_ratio = 0;                                  ///< of the solid
+  double emissivity = 0;                                     ///< of the surface
+  double contact_angle_deg = 10;                             ///< of the melt on its own solid
   /// n + ik at the laser wavelength; (1, 0) where none is known (see has_index()).
   std::complex<double> index_solid{1, 0}, index_liquid{1, 0};
 

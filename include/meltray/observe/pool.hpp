@@ -23,7 +23,8 @@ inline bool is_material(const Particles& p, std::size_t i) {
   return !p.is_wall(i) && !p.has(i, kRemoved);
 }
 
-/// The connected melt around the beam. Lengths [m]; each particle counts with its spacing.
+/// The connected melt around the beam. Lengths [m]; each particle counts with its spacing. Melt that goes on
+/// through a periodic face is cut there.
 struct Pool {
   bool exists = false;
   double length = 0;                            ///< along x

@@ -31,6 +31,7 @@ struct ElasticSolid {
 
   /// rho_m exp(-3 alpha (T - T_m)), rho_m the scene's density, so that melting does not change it [kg/m^3].
   double reference_density(const SceneConstants& constants, double temperature) const;
+  /// K (rho / rho_0 - 1) [Pa].
   double pressure(double density, double reference) const;
   /// Of longitudinal waves, sqrt((K + 4 G / 3) / rho) [m/s].
   double sound_speed(double density) const;

@@ -25,7 +25,8 @@ struct WallFace {
 /// Constants of a scene that every term may read.
 struct SceneConstants {
   int dim = 3;
-  double spacing = 0, smoothing = 0, density = 0;
+  double spacing = 0, smoothing = 0;  ///< of the lattice; h [m]
+  double density = 0;                 ///< of the melt, rho_0 [kg/m^3]
   sph::KernelType kernel = sph::KernelType::wendland_c2;
   sph::LatticeSums lattice;
   Material material;
