@@ -27,10 +27,6 @@ StudyScene own_case(const std::filesystem::path& case_file) {
 
 StudyScene own_case_in_steps(const std::filesystem::path& case_file, Cells& cells) {
   const scene::Scene s = scene::read_case(case_file);
-  if (s.terms.pressure && s.flow.solver == scene::FlowSolver::wcsph)
-    throw UsageError(
-        fmt::format("study: {}: found flow.solver = \"wcsph\"; allowed \"isph\", or a scene without flow",
-                    case_file.string()));
   StudyScene own = own_case(case_file);
   own.measure = measure_of(s);
   double step = s.time.integrator.fixed_step;
