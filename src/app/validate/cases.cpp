@@ -42,8 +42,11 @@ const std::vector<ValidationCase>& validation_cases() {
        gallium_melting},
       {2, "hydrostatic", "tank at rest: pressure, speed and density, both solvers, both density diffusions",
        hydrostatic},
-      {2, "sound_wave", "standing wave of sound: period and amplitude, WCSPH with each density diffusion",
+      {2, "sound_wave",
+       "standing wave of sound: period and amplitude, WCSPH with each density diffusion and artificial "
+       "viscosity",
        sound_wave},
+      {2, "shear_wave", "shear wave under artificial viscosity: its viscosity on the lattice", shear_wave},
       {2, "dam_break_martin_moyce", "collapse of a column: front over time, both solvers",
        dam_break_martin_moyce},
       {2, "dam_break_lobovsky",

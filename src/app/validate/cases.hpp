@@ -53,6 +53,7 @@ Rows hydrostatic(const Setting& setting);
 Rows elastic_plate(const Setting& setting);
 Rows constrained_expansion(const Setting& setting);
 Rows sound_wave(const Setting& setting);
+Rows shear_wave(const Setting& setting);
 Rows dam_break_martin_moyce(const Setting& setting);
 Rows dam_break_lobovsky(const Setting& setting);
 Rows absorptance_nist_316l(const Setting& setting);
