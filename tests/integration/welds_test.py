@@ -38,16 +38,16 @@ class Welds(Scratch):
         self.assertEqual([line for line in every if "ss316-0.6m-s-208w" in line], list(set(every) - set(left)))
 
     def test_depths_and_slopes_are_judged(self):
-        self.assertIn("0 of 0 rows", self.validate("--finished").stdout)
+        self.assertIn("0 rows judged: 0 passed", self.validate("--finished").stdout)
         self.finished("ss316-0.6m-s-208w", 100e-6)  # measured: 93.6 um
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 0, done.stdout)
-        self.assertIn("1 of 1 rows passed", done.stdout)
+        self.assertIn("1 rows judged: 1 passed, 0 failed", done.stdout)
         self.assertIn("dx 7 um", done.stdout)  # the run's own, not that of the list
         self.finished("ss316-0.6m-s-520w", 190e-6)  # measured: 380 um; slope 0.29 of 0.92 mm/kW
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertIn("2 of 4 rows passed, 2 failed", done.stdout)
+        self.assertIn("4 rows judged: 2 passed, 2 failed", done.stdout)
 
     def test_only_welds_have_commands(self):
         done = meltray("validate", "fresnel_angles", "--commands")
