@@ -95,15 +95,18 @@ Rows hydrostatic(const Setting& setting) {
     bool judged;
   };
   // The plain diffusion is known to disturb the pressure of a tank at rest: it is there for comparison.
+  // With the shifting of the row of Table 1: without it the layers move against each other in the end.
+  const scene::Overrides isph = {"flow.solver=isph", "terms.artificial_viscosity=false",
+                                 "flow.pressure_tolerance=1e-6", "flow.shifting=4",
+                                 "flow.shifting_speed_m_s=0.1"};
+  // The speed that is left in the corners falls with the step.
+  scene::Overrides short_steps = isph;
+  short_steps.emplace_back("time.max_step_s=1e-3");
   const std::vector<Variant> models = {
       {"wcsph, antuono", {}, true},
       {"wcsph, molteni_colagrossi", {"flow.density_diffusion=molteni_colagrossi"}, false},
-      // With the shifting of the row of Table 1: without it the layers move against each other in the end.
-      // The speed that is left in the corners falls with the step.
-      {"isph",
-       {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.pressure_tolerance=1e-6",
-        "flow.shifting=4", "flow.shifting_speed_m_s=0.1", "time.max_step_s=1e-3"},
-       !setting.small}};
+      {"isph", isph, !setting.small},
+      {"isph, steps of 1e-3", short_steps, !setting.small}};
   const double end = setting.small ? 1.0 : 2.0;
   const std::vector<double> spacings =
       setting.small ? std::vector<double>{0.02} : std::vector<double>{0.04, 0.02};
@@ -115,19 +118,16 @@ Rows hydrostatic(const Setting& setting) {
       const Tank tank = run(setting, m.overrides, spacing, end);
       const Measured how{resolution_text(spacing), tank.seconds, "p = rho g (H - z)"};
       const std::string name = std::string(m.name) + ": ";
-      const auto add = [&](Row row, double coarse_error, bool judged) {
-        row.judged = m.judged && judged && spacing == spacings.back();
+      const auto add = [&](Row row, double coarse_error) {
+        row.judged = m.judged && spacing == spacings.back();
         if (coarse) row.order = observed_order(coarse_error, row.error, 2);
         rows.push_back(row);
       };
-      add(limit_row(name + "interior pressure L2", tank.pressure, 0.01, how), coarse ? coarse->pressure : 0,
-          true);
-      add(limit_row(name + "largest speed / sqrt(g H)", tank.speed, 1e-3, how), coarse ? coarse->speed : 0,
-          true);
+      add(limit_row(name + "interior pressure L2", tank.pressure, 0.01, how), coarse ? coarse->pressure : 0);
+      add(limit_row(name + "largest speed / sqrt(g H)", tank.speed, 1e-3, how), coarse ? coarse->speed : 0);
       add(limit_row(name + "pressure bias below the surface", tank.bias, 0.01, how),
-          coarse ? std::abs(coarse->bias) : 0, false);
-      if (tank.density > 0)
-        add(limit_row(name + "largest density variation", tank.density, 0.011, how), 0, true);
+          coarse ? std::abs(coarse->bias) : 0);
+      if (tank.density > 0) add(limit_row(name + "largest density variation", tank.density, 0.011, how), 0);
       coarse = tank;
     }
   }
