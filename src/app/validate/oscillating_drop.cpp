@@ -27,6 +27,7 @@ double deformation(const Particles& p) {
 struct Oscillation {
   double frequency = 0;  ///< [Hz]
   double damping = 0;    ///< of the amplitude [1/s]
+  double exact_frequency = 0, exact_damping = 0;
   double seconds = 0;
 };
 
@@ -52,7 +53,7 @@ Oscillation analyse(const std::vector<std::pair<double, double>>& record) {
     }
   }
   Oscillation out;
-  if (zeros.size() < 3) return {std::nan(""), std::nan(""), 0};
+  if (zeros.size() < 3) return {std::nan(""), std::nan("")};
   out.frequency = 0.5 * static_cast<double>(zeros.size() - 1) / (zeros.back() - zeros.front());
   const auto n = static_cast<double>(times.size());
   double st = 0, sl = 0, stt = 0, stl = 0;
@@ -71,12 +72,16 @@ Oscillation run(const Setting& setting, const char* metal, int per_radius, doubl
   const auto simulation = start(setting, {fmt::format("material.name={}", metal),
                                           fmt::format("domain.spacing_m={}", kRadius / per_radius)});
   const Material& m = simulation->scene().material;
-  const double period =
-      2 * constants::pi * std::sqrt(m.density * std::pow(kRadius, 3) / (6 * m.sigma(kTemperature)));
+  const double radius = equivalent_radius(simulation->particles(), m.density);
+  // n = 2 in two dimensions: omega^2 = n (n^2 - 1) sigma / (rho R^3), damping 2 n (n - 1) nu / R^2.
+  const double exact =
+      std::sqrt(6 * m.sigma(kTemperature) / (m.density * std::pow(radius, 3))) / (2 * constants::pi);
   std::vector<std::pair<double, double>> record{{0, deformation(simulation->particles())}};
-  advance(*simulation, periods * period,
+  advance(*simulation, periods / exact,
           [&] { record.emplace_back(simulation->time(), deformation(simulation->particles())); });
   Oscillation out = analyse(record);
+  out.exact_frequency = exact;
+  out.exact_damping = 4 * m.viscosity(kTemperature) / m.density / (radius * radius);
   out.seconds = watch.seconds();
   return out;
 }
@@ -92,11 +97,6 @@ Rows oscillating_drop(const Setting& setting) {
   if (setting.small) variants = {{"Fe 2-D", "iron", {10}}};
   Rows rows;
   for (const Variant& v : variants) {
-    const Material m = material_by_name(v.metal);
-    // n = 2 in two dimensions: omega^2 = n (n^2 - 1) sigma / (rho R^3), damping 2 n (n - 1) nu / R^2.
-    const double exact =
-        std::sqrt(6 * m.sigma(kTemperature) / (m.density * std::pow(kRadius, 3))) / (2 * constants::pi);
-    const double damping = 4 * m.viscosity(kTemperature) / m.density / (kRadius * kRadius);
     std::vector<double> scales;
     Rows frequencies, dampings;
     for (const int per_radius : v.per_radius) {
@@ -104,9 +104,9 @@ Rows oscillating_drop(const Setting& setting) {
       const Measured how{fmt::format("R/dx {}", per_radius), o.seconds, "Rayleigh 1879, cylinder"};
       scales.push_back(1.0 / per_radius);
       frequencies.push_back(
-          relative_row(fmt::format("{}: frequency [Hz]", v.name), o.frequency, exact, 0.03, how));
+          relative_row(fmt::format("{}: frequency [Hz]", v.name), o.frequency, o.exact_frequency, 0.03, how));
       frequencies.back().goal = 0.02;
-      dampings.push_back(relative_row(fmt::format("{}: damping [1/s]", v.name), o.damping, damping, 0,
+      dampings.push_back(relative_row(fmt::format("{}: damping [1/s]", v.name), o.damping, o.exact_damping, 0,
                                       {how.resolution, how.seconds, "Lamb 1932, art. 355, cylinder"}));
     }
     add_series(rows, scales, frequencies);

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "meltray/core/constants.hpp"
+
 namespace meltray::app {
 
 std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides) {
@@ -31,6 +33,12 @@ double rms_speed(const Particles& p) {
     mass += p.mass[i];
   }
   return mass > 0 ? std::sqrt(energy / mass) : 0.0;
+}
+
+double equivalent_radius(const Particles& p, double density) {
+  double volume = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) volume += p.mass[i] / density;
+  return p.dim == 2 ? std::sqrt(volume / constants::pi) : std::cbrt(0.75 * volume / constants::pi);
 }
 
 std::string resolution_text(double spacing) {

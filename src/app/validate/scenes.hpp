@@ -29,6 +29,10 @@ void advance(scene::Simulation& simulation, double end, const std::function<void
 /// sqrt(sum m v^2 / sum m) over liquid particles [m/s].
 double rms_speed(const Particles& particles);
 
+/// Radius of a ball (disc) of the volume of all particles, which a finite R/dx makes a little different from
+/// R.
+double equivalent_radius(const Particles& particles, double density);
+
 /// "dx 10 um", "dx 0.02" and the like.
 std::string resolution_text(double spacing);
 
