@@ -78,7 +78,7 @@ double clumping(const Particles& p, double spacing) {
 /// A way to run the vortices.
 struct Variant {
   std::string name;
-  scene::Overrides overrides;
+  scene::Overrides overrides = {};
   std::vector<double> spacings;
   std::string step_key = {};   ///< of a length of steps that goes with the spacing
   double step = 0;             ///< its value over dx / U
@@ -152,14 +152,30 @@ std::vector<Variant> variants(bool small) {
                           "material.conductivity_liquid_w_m_k=1e-3", "material.latent_heat_fusion_j_kg=0",
                           "time.method=multirate"})
     multirate.emplace_back(key);
+  const char* const step = "time.max_step_s";
   std::vector<Variant> all = {
-      {"stage", {"splitting.projection=stage"}, three},
-      {"step", {"splitting.projection=step"}, three, "time.max_step_s", 0.1},
-      {"interface viscosity, h/dx 1.8", {}, two, "time.max_step_s", 0.1, 1.8, 0.05},
-      {"interface viscosity, h/dx 1.3", {}, two, "time.max_step_s", 0.1, 1.3, 0.05, false},
-      {"wcsph", wcsph, two, "", 0, 0, 0.03, true, true},
+      {.name = "stage", .overrides = {"splitting.projection=stage"}, .spacings = three},
+      {.name = "step", .spacings = three, .step_key = step, .step = 0.1},
+      {.name = "interface viscosity, h/dx 1.8",
+       .spacings = two,
+       .step_key = step,
+       .step = 0.1,
+       .interface_ratio = 1.8,
+       .decay_line = 0.05},
+      {.name = "interface viscosity, h/dx 1.3",
+       .spacings = two,
+       .step_key = step,
+       .step = 0.1,
+       .interface_ratio = 1.3,
+       .judged = false},
+      {.name = "wcsph", .overrides = wcsph, .spacings = two, .noisy = true},
       // Slow steps of 2.2 h / c, as in the iron welds.
-      {"wcsph, multirate", multirate, two, "time.fixed_step_s", 0.4, 0, 0.03, true, true}};
+      {.name = "wcsph, multirate",
+       .overrides = multirate,
+       .spacings = two,
+       .step_key = "time.fixed_step_s",
+       .step = 0.4,
+       .noisy = true}};
   if (small)
     for (Variant& v : all) v.spacings = {1.0 / 30};
   return all;
