@@ -107,7 +107,7 @@ Row speed_row(const std::string& model, const Trace& trace, const Table& referen
 Rows dam_break_martin_moyce(const Setting& setting) {
   const Table reference(setting.folder / "reference.csv");
   const double spacing = setting.small ? 0.05 : 0.025;
-  const double end = setting.small ? 1.7 : 3.4;  // of the points that count, in t*
+  const double end = setting.small ? 1.7 : 5.4;  // of the points that count, in t*
   Rows rows;
   for (const Model& m : collapse_models()) {
     scene::Overrides overrides = m.overrides;
@@ -129,9 +129,9 @@ Rows dam_break_martin_moyce(const Setting& setting) {
     rows.back().judged = false;
     rows.push_back(limit_row(m.name + ": mean deviation of x* by the simulation's clock",
                              mean_deviation(trace, reference, end, 0), 0.05, how));
-    rows.back().judged = false;
+    rows.back().judged = !setting.small;
     rows.push_back(
-        limit_row(m.name + ": mean deviation of x*", mean_deviation(trace, reference, end, late), 0.05, how));
+        limit_row(m.name + ": mean deviation of x* by the columns' clock", mean_deviation(trace, reference, end, late), 0.05, how));
     rows.back().judged = !setting.small;
     rows.push_back(speed_row(m.name, trace, reference, 1.2, setting.small ? 1.65 : 3.0,
                              setting.small ? 0.15 : 0.05, how));
