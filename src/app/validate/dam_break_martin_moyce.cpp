@@ -130,8 +130,8 @@ Rows dam_break_martin_moyce(const Setting& setting) {
     rows.push_back(limit_row(m.name + ": mean deviation of x* by the simulation's clock",
                              mean_deviation(trace, reference, end, 0), 0.05, how));
     rows.back().judged = !setting.small;
-    rows.push_back(
-        limit_row(m.name + ": mean deviation of x* by the columns' clock", mean_deviation(trace, reference, end, late), 0.05, how));
+    rows.push_back(limit_row(m.name + ": mean deviation of x* by the columns' clock",
+                             mean_deviation(trace, reference, end, late), 0.05, how));
     rows.back().judged = !setting.small;
     rows.push_back(speed_row(m.name, trace, reference, 1.2, setting.small ? 1.65 : 3.0,
                              setting.small ? 0.15 : 0.05, how));
