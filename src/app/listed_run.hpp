@@ -19,14 +19,11 @@ struct ListedRun {
 /// The command line that does the run, or goes on with it where its folder is there.
 std::string command_of(const ListedRun& run);
 
-/// summary.json of a run folder, or null where there is none.
-nlohmann::json summary_of(const std::filesystem::path& folder);
-
 /// Spacing of the particles of a run folder [m], as its own case file has it; 0 where it has none.
 /// Throws UsageError where that file cannot be read.
 double spacing_of(const std::filesystem::path& folder);
 
-/// Whether the run stands at its end.
+/// Whether a run stands at its end, by its observe::recorded_summary().
 bool reached(const ListedRun& run, const nlohmann::json& summary);
 
 /// Runs or continues it and returns an exit code. A numerical failure is printed, stays in the run's folder

@@ -36,13 +36,6 @@ std::string resume_hint(const fs::path& path) {
   return fmt::format("meltray resume {}", path.string());
 }
 
-nlohmann::json summary_of(const fs::path& run_folder) {
-  const fs::path file = run_folder / "summary.json";
-  if (!fs::exists(file)) return nlohmann::json::object();
-  auto summary = nlohmann::json::parse(read_text(file), nullptr, false);
-  return summary.is_object() ? summary : nlohmann::json::object();
-}
-
 /// Holds the lock of the marker file, or throws.
 int lock_marker(const fs::path& path) {
   const fs::path marker = path / kMarker;
@@ -176,16 +169,23 @@ bool is_run_folder(const fs::path& path) {
   return fs::exists(path / kMarker);
 }
 
+nlohmann::json recorded_summary(const fs::path& run_folder) {
+  const fs::path file = run_folder / "summary.json";
+  if (!fs::exists(file)) return nlohmann::json::object();
+  auto summary = nlohmann::json::parse(read_text(file), nullptr, false);
+  return summary.is_object() ? summary : nlohmann::json::object();
+}
+
 std::string recorded_outcome(const fs::path& run_folder) {
-  return summary_of(run_folder).value("outcome", "");
+  return recorded_summary(run_folder).value("outcome", "");
 }
 
 double recorded_time(const fs::path& run_folder) {
-  return summary_of(run_folder).value("time_s", 0.0);
+  return recorded_summary(run_folder).value("time_s", 0.0);
 }
 
 std::string recorded_case(const fs::path& run_folder) {
-  return summary_of(run_folder).value("case", fs::absolute(run_folder).filename().string());
+  return recorded_summary(run_folder).value("case", fs::absolute(run_folder).filename().string());
 }
 
 bool is_finished(const std::string& outcome) {

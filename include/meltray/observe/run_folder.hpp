@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -49,6 +50,8 @@ class RunFolder {
 
 /// True for folders that carry the marker.
 bool is_run_folder(const std::filesystem::path& path);
+/// summary.json of a run folder; an empty object when there is none or it cannot be read.
+nlohmann::json recorded_summary(const std::filesystem::path& run_folder);
 /// "outcome" of summary.json; empty when there is none or it cannot be read.
 std::string recorded_outcome(const std::filesystem::path& run_folder);
 /// "time_s" of summary.json [s]; 0 when there is none.

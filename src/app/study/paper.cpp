@@ -14,6 +14,7 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/history.hpp"
+#include "meltray/observe/run_folder.hpp"
 #include "meltray/scene/case_file.hpp"
 #include "meltray/scene/presets.hpp"
 
@@ -144,7 +145,7 @@ int study_paper(const PaperArguments& a) {
   const auto welds = matrix(a);
   if (a.list) {
     for (const Weld& w : welds)
-      if (!reached(w, summary_of(w.folder))) fmt::print("{}\n", command_of(w));
+      if (!reached(w, observe::recorded_summary(w.folder))) fmt::print("{}\n", command_of(w));
     return kExitOk;
   }
   fs::create_directories(a.out);
@@ -155,13 +156,13 @@ int study_paper(const PaperArguments& a) {
       "lag_deg\n";
   std::map<std::pair<std::string, int>, std::map<std::string, Cost>> costs;
   for (const Weld& w : welds) {
-    if (!reached(w, summary_of(w.folder))) {
+    if (!reached(w, observe::recorded_summary(w.folder))) {
       fmt::print("{}\n", w.folder.string());
       std::fflush(stdout);
       const int code = carry_out(w, a.threads);
       if (code != kExitOk) return code;
     }
-    const auto s = summary_of(w.folder);
+    const auto s = observe::recorded_summary(w.folder);
     if (!s.is_object()) continue;
     table += row_of(w, s);
     if (!reached(w, s)) continue;  // a failed run has no cost to compare

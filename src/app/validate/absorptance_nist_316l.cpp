@@ -10,6 +10,7 @@
 #include "app/validate/scenes.hpp"
 #include "app/validate/table.hpp"
 #include "meltray/observe/history.hpp"
+#include "meltray/observe/run_folder.hpp"
 
 namespace meltray::app {
 namespace {
@@ -113,7 +114,7 @@ Rows absorptance_nist_316l(const Setting& setting) {
   Rows rows;
   std::vector<Weld> welds;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const auto summary = summary_of(list[k].folder);
+    const auto summary = observe::recorded_summary(list[k].folder);
     if (!reached(list[k], summary)) continue;
     const auto& laser = summary.at("budgets").at("laser");
     welds.push_back({measured[k], laser.at("absorbed_j").get<double>() / laser.at("in_j").get<double>(),

@@ -9,6 +9,7 @@
 #include "app/validate/scenes.hpp"
 #include "app/validate/table.hpp"
 #include "meltray/observe/history.hpp"
+#include "meltray/observe/run_folder.hpp"
 
 namespace meltray::app {
 namespace {
@@ -107,7 +108,7 @@ Rows keyhole_depth_xray(const Setting& setting) {
   Rows rows;
   std::map<std::string, Series> series;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const auto summary = summary_of(list[k].folder);
+    const auto summary = observe::recorded_summary(list[k].folder);
     if (!reached(list[k], summary)) continue;
     const Bead& b = measured[k];
     const double depth = mean_depth(list[k].folder, list[k].until);

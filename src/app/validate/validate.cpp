@@ -12,6 +12,7 @@
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/nearest.hpp"
+#include "meltray/observe/run_folder.hpp"
 
 namespace meltray::app {
 namespace {
@@ -54,7 +55,7 @@ std::vector<const ValidationCase*> selected(const ValidateArguments& arguments) 
 int work_off(const ValidationCase& c, const Setting& setting, const ValidateArguments& arguments) {
   if (!c.welds || arguments.finished) return kExitOk;
   for (const ListedRun& weld : c.welds(setting)) {
-    if (reached(weld, summary_of(weld.folder))) continue;
+    if (reached(weld, observe::recorded_summary(weld.folder))) continue;
     if (arguments.commands) {
       fmt::print("{}\n", command_of(weld));
       continue;
