@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "meltray/scene/body_bounds.hpp"
 #include "meltray/scene/closed_box.hpp"
 #include "meltray/scene/elastic.hpp"
 
@@ -93,9 +94,9 @@ std::vector<std::string> doubtful_settings(const Scene& s) {
   if (!s.laser || s.domain.bodies.empty()) return found;
   double top = -1e300, end = -1e300;
   for (const Body& body : s.domain.bodies) {
-    const bool box = body.shape == ShapeKind::box;
-    top = std::max(top, std::min(box ? body.max[2] : body.center[2] + body.radii[2], s.domain.max[2]));
-    end = std::max(end, std::min(box ? body.max[0] : body.center[0] + body.radii[0], s.domain.max[0]));
+    const Vec3 max = scene::bounds_of(body).max.cwiseMin(s.domain.max);
+    top = std::max(top, max[2]);
+    end = std::max(end, max[0]);
   }
   if (std::abs(top) > s.domain.spacing)
     found.push_back(

@@ -256,6 +256,12 @@ int Document::layer(std::string_view path) const {
   return entry ? entry->layer : 0;
 }
 
+bool Document::may_be_idle(std::string_view path, const std::vector<std::string>& decided_by) const {
+  const int own = layer(path);
+  return resolved.contains(own) || std::any_of(decided_by.begin(), decided_by.end(),
+                                               [&](const std::string& key) { return layer(key) > own; });
+}
+
 Document load_document(const fs::path& file, const std::vector<std::string>& overrides,
                        IsTableValue is_table_value) {
   Loader loader(is_table_value);

@@ -48,6 +48,9 @@ struct Document {
   Place place(std::string_view path) const;
   /// Layer of a key; 0 where it was not given.
   int layer(std::string_view path) const;
+  /// Whether a given key may stand without effect: in a resolved case, which gives every key, or where a
+  /// later layer gave one of those that decide, so that it was switched off on purpose.
+  bool may_be_idle(std::string_view path, const std::vector<std::string>& decided_by) const;
 };
 
 Document load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides,

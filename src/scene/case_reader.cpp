@@ -142,19 +142,18 @@ void derive_defaults(const Document& document, Scene& scene) {
   }
 }
 
-/// A later layer switched off on purpose what an earlier one gave.
-bool switched_off_later(const Document& document, const Need& need, int index, int layer) {
-  return std::any_of(need.keys.begin(), need.keys.end(), [&](const std::string& decides) {
-    return document.layer(path_of(decides, index)) > layer;
-  });
+/// The keys that decide, with the name of the face or the number of the body.
+std::vector<std::string> keys_of(const Need& need, int index) {
+  std::vector<std::string> keys;
+  for (const std::string& key : need.keys) keys.push_back(path_of(key, index));
+  return keys;
 }
 
 void check_presence(const Document& document, const Scene& scene) {
   for_each_key(scene, [&](const Key& key, int i, const std::string& path) {
     const Need* lacking = key.inactive(scene, i);
     const Entry* entry = document.find(path);
-    if (entry && lacking && !document.resolved.contains(entry->layer) &&
-        !switched_off_later(document, *lacking, i, entry->layer))
+    if (entry && lacking && !document.may_be_idle(path, keys_of(*lacking, i)))
       refuse(entry->place, path, fmt::format("{}, which has no effect here", describe(entry->value)),
              "this key only with " + lacking->text);
     if (!entry && !lacking && key.is_required)

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "meltray/scene/body_bounds.hpp"
 #include "scene/case_check.hpp"
 #include "scene/keys.hpp"
 
@@ -55,8 +56,7 @@ void check_body(const Scene& scene, const Document& document, int index) {
   const bool box = body.shape == ShapeKind::box;
   const std::string key = section + (box ? ".max_m" : ".radii_m");
   if (box) check_extent(document, scene, section, body.min, body.max);
-  const Vec3 min = box ? body.min : Vec3(body.center - body.radii);
-  const Vec3 max = box ? body.max : Vec3(body.center + body.radii);
+  const auto [min, max] = bounds_of(body);
   for (int a = 0; a < d.dimension; ++a) {
     if (max[a] <= d.min[a] || min[a] >= d.max[a])
       refuse(document.place(key), key, fmt::format("a body outside the domain in {}", name_of(d, a)),

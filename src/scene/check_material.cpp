@@ -83,14 +83,15 @@ void check_material(const Scene& scene, const Document& document) {
     refuse(document.place("material.surface_tension_floor_n_m"), "material.surface_tension_floor_n_m",
            fmt::format("{} N/m", m.surface_tension_floor),
            fmt::format("at most the surface tension at the liquidus, {} N/m", m.surface_tension(m.liquidus)));
-  if (scene.terms.buoyancy && m.expansion == 0 && !document.given("terms.buoyancy"))
+  if (scene.terms.buoyancy && m.expansion == 0) {
+    if (document.given("terms.buoyancy"))
+      refuse(document.place("terms.buoyancy"), "terms.buoyancy",
+             "true with material.expansion_1_k = 0, which gives no buoyancy", "material.expansion_1_k > 0");
     refuse(document.place("model"), "model",
            fmt::format("\"{}\", a row with buoyancy, with material.expansion_1_k = 0, which gives none",
                        scene.model),
            "terms.buoyancy = false with it, or material.expansion_1_k > 0");
-  if (scene.terms.buoyancy && m.expansion == 0)
-    refuse(document.place("terms.buoyancy"), "terms.buoyancy",
-           "true with material.expansion_1_k = 0, which gives no buoyancy", "material.expansion_1_k > 0");
+  }
   const bool marangoni = scene.terms.marangoni && scene.terms.surface_tension;
   if (marangoni && m.surface_tension.slope(m.liquidus) == 0)
     refuse(document.place("terms.marangoni"), "terms.marangoni",

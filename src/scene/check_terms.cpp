@@ -48,14 +48,13 @@ void check_thermal(const Scene& scene, const Document& document, int index) {
            fmt::format("{} s with a face that heats or cools ({})", scene.heat.bulk_interval, key), "0 [s]");
 }
 
-/// What moves the melt does nothing where nothing flows. Terms that an earlier layer gave, before a later one
-/// took the flow away on purpose, may stand.
+/// What moves the melt does nothing where nothing flows.
 void check_flowing(const Scene& scene, const Document& document) {
   const Terms& t = scene.terms;
   if (t.pressure) {
     if (!t.melting && scene.flow.solid == SolidModel::fixed && !document.given("flow.solid") &&
         hottest(scene) < scene.material.liquidus &&
-        document.layer("terms.melting") <= document.layer("terms.pressure"))
+        !document.may_be_idle("terms.pressure", {"terms.melting"}))
       inert(document, "terms.pressure", "nothing is liquid and nothing melts",
             "terms.melting = true or a liquid body with it");
     return;
@@ -68,12 +67,9 @@ void check_flowing(const Scene& scene, const Document& document) {
        {"terms.recoil", t.recoil},
        {"terms.buoyancy", t.buoyancy},
        {"terms.gravity", t.gravity}}};
-  for (const auto& [key, on] : forces) {
-    const int layer = document.layer(key);
-    if (on && document.given(key) && !document.resolved.contains(layer) &&
-        document.layer("terms.pressure") <= layer)
+  for (const auto& [key, on] : forces)
+    if (on && document.given(key) && !document.may_be_idle(key, {"terms.pressure"}))
       inert(document, key, "terms.pressure is off and nothing flows", "terms.pressure = true with it");
-  }
 }
 
 }  // namespace

@@ -10,6 +10,23 @@
 
 namespace meltray::scene {
 
+namespace {
+
+/// What each term does to a particle, with its name.
+using Shares = std::vector<std::pair<double, std::string>>;
+
+/// "pressure 3e+06 m/s^2, ...".
+std::string largest_first(Shares shares, const char* unit) {
+  std::sort(shares.begin(), shares.end(),
+            [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  std::string text;
+  for (const auto& [size, name] : shares)
+    text += fmt::format("{}{} {:.3g} {}", text.empty() ? "" : ", ", name, size, unit);
+  return text;
+}
+
+}  // namespace
+
 void Model::count_solve(const solve::SolveReport& report, double t) {
   ++counters->pressure_solves;
   counters->pressure_iterations += report.iterations;
@@ -86,7 +103,7 @@ void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) 
 }
 
 std::string Model::blame(Index i, double dt) {
-  std::vector<std::pair<double, std::string>> pulls;
+  Shares pulls;
   const auto pull = [&](const char* name, auto&& add) {
     terms::Rates rates = cleared_rates();
     add(rates.acceleration);
@@ -126,11 +143,7 @@ std::string Model::blame(Index i, double dt) {
     pull("pressure and surface force",
          [&](auto& a) { projection.add_acceleration(stage, projection_options_.entry, a); });
   }
-  std::sort(pulls.rbegin(), pulls.rend());
-  std::string text = "accelerations in the last accepted state: ";
-  for (const auto& [a, name] : pulls)
-    text += fmt::format("{} {:.3g} m/s^2{}", name, a, &name == &pulls.back().second ? "" : ", ");
-  return text;
+  return "accelerations in the last accepted state: " + largest_first(std::move(pulls), "m/s^2");
 }
 
 double Model::largest_speed(const std::vector<Index>& which, bool with_loose) const {
@@ -190,7 +203,7 @@ std::vector<StepLimit> Model::step_limits() {
 }
 
 std::string Model::blame_heat(Index i) {
-  std::vector<std::pair<double, const char*>> sources;
+  Shares sources;
   const auto source = [&](const char* name, auto&& add) {
     terms::Rates rates = cleared_rates();
     add(rates.heating);
@@ -205,12 +218,7 @@ std::string Model::blame_heat(Index i) {
     source("evaporation and radiation",
            [&](double* heating) { losses_.add_heating(stage, heating, ignored); });
   if (!laser_power.empty()) sources.emplace_back(laser_power[i] / patch.mass[i], "laser");
-  std::sort(sources.begin(), sources.end(),
-            [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
-  std::string text = "heating in the last accepted state: ";
-  for (std::size_t k = 0; k < sources.size(); ++k)
-    text += fmt::format("{}{} {:.3g} W/kg", k == 0 ? "" : ", ", sources[k].second, sources[k].first);
-  return text;
+  return "heating in the last accepted state: " + largest_first(std::move(sources), "W/kg");
 }
 
 StepLimit Model::stable_step(double t, const double* y) {

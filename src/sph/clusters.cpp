@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/clusters.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "meltray/core/errors.hpp"
 #include "meltray/core/memory.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/sph/pairs.hpp"
+#include "sph/list_size.hpp"
 
 namespace meltray::sph {
 
@@ -243,11 +241,7 @@ void ClusterList::build(const ClusterSet& rows, const ClusterSet& sources, doubl
       octets_listed += n;
       start_[++group] = static_cast<Index>(octets_listed);
     }
-  if (octets_listed > std::numeric_limits<Index>::max())
-    throw NumericalFailure(
-        fmt::format("list of octets: {} entries, more than 32-bit numbers can tell apart: fewer "
-                    "particles or a smaller domain.smoothing_ratio",
-                    octets_listed));
+  require_indexable(octets_listed, "list of octets");
   octet_.resize(start_[group]);
 #pragma omp parallel for schedule(static)
   for (Index b = 0; b < blocks; ++b)

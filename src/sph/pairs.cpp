@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "meltray/sph/pairs.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
-#include "meltray/core/errors.hpp"
 #include "meltray/core/memory.hpp"
 #include "sph/eight_candidates.hpp"
+#include "sph/list_size.hpp"
 
 namespace meltray::sph {
 
@@ -184,11 +182,7 @@ void PairList::place_rows(Index begin, Index end) {
     places += (count_[i] + kLaneCount - 1) / kLaneCount * kLaneCount;
     start_[i + 1] = static_cast<Index>(places);
   }
-  if (places > std::numeric_limits<Index>::max())
-    throw NumericalFailure(
-        fmt::format("pair list: {} places, more than 32-bit numbers can tell apart: fewer particles "
-                    "or a smaller domain.smoothing_ratio",
-                    places));
+  require_indexable(places, "pair list");
   resize_anew(j_, start_[end]);
 }
 

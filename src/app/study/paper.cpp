@@ -163,7 +163,7 @@ int study_paper(const PaperArguments& a) {
       if (code != kExitOk) return code;
     }
     const auto s = observe::recorded_summary(w.folder);
-    if (!s.is_object()) continue;
+    if (s.empty()) continue;
     table += row_of(w, s);
     if (!reached(w, s)) continue;  // a failed run has no cost to compare
     Cost& c = costs[{w.metal, w.frequency}][w.model];

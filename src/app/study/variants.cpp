@@ -21,13 +21,9 @@ std::vector<std::string> stiff_terms(const scene::Scene& s) {
   return out;
 }
 
-bool weakly_compressible(const scene::Scene& s) {
-  return s.terms.pressure && s.flow.solver == scene::FlowSolver::wcsph;
-}
-
 /// Models of a scene: with a projected pressure one for each projection.
 std::vector<std::string> models(const scene::Scene& s) {
-  if (!s.terms.pressure || weakly_compressible(s)) return {""};
+  if (!projects(s)) return {""};
   return {"step", "stage"};
 }
 
@@ -51,11 +47,15 @@ Variant variant(const std::string& method, int order, const std::string& model,
 
 }  // namespace
 
+bool projects(const scene::Scene& s) {
+  return s.terms.pressure && s.flow.solver == scene::FlowSolver::isph;
+}
+
 std::vector<Variant> method_variants(const scene::Scene& s, bool few) {
   const auto terms = stiff_terms(s);
   std::vector<Variant> out;
   for (const std::string& model : models(s)) {
-    if (!weakly_compressible(s))  // Euler's steps amplify sound
+    if (!s.terms.pressure || projects(s))  // Euler's steps amplify sound
       out.push_back(variant("euler", 1, model, assign(terms, "implicit")));
     for (int order = 2; order <= 5; ++order) {
       if (!few || order % 2 == 0) out.push_back(variant("imex", order, model, assign(terms, "implicit")));

@@ -16,6 +16,9 @@ struct Variant {
   scene::Overrides overrides;
 };
 
+/// Whether the pressure of the scene is projected (ISPH).
+bool projects(const scene::Scene& scene);
+
 /// Methods and orders that make sense for the scene, with every stiff term on the implicit side where there
 /// is one; each projection where there is a pressure. `few`: the orders 2 and, of the additive pairs, 4.
 std::vector<Variant> method_variants(const scene::Scene& scene, bool few);

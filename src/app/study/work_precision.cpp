@@ -67,8 +67,7 @@ class Study {
   /// steps; the weld, which it does not carry through, is judged by that of its own default.
   Reference find_reference(const scene::Scene& scene, const scene::Overrides& base, double finest) {
     const bool chaotic = !job_.definition.seeds.empty();
-    const bool projects = scene.terms.pressure && scene.flow.solver == scene::FlowSolver::isph;
-    const std::string model = !projects ? "" : chaotic ? "step" : "stage";
+    const std::string model = !projects(scene) ? "" : chaotic ? "step" : "stage";
     try {
       return reference(job_, model, base, finest / (chaotic ? kFinerChaotic : kFiner), findings_);
     } catch (const NumericalFailure& e) {

@@ -48,13 +48,9 @@ Neumann neumann(const scene::Scene& scene, double initial) {
 
 MeltedStrip melt_strip(const Setting& setting, double spacing, double end, scene::Overrides overrides) {
   const Watch watch;
-  // Twelve particles across: a periodic direction has to be three supports long.
-  const double height = 12 * spacing;
   const double length = scene::read_case(setting.folder / "case.toml").domain.max[0];
-  overrides.insert(
-      overrides.end(),
-      {fmt::format("domain.spacing_m={}", spacing), fmt::format("domain.max_m=[{},{}]", length, height),
-       fmt::format("bodies.0.max_m=[{},{}]", length, height), fmt::format("time.end_s={}", end)});
+  for (const std::string& size : strip(length, spacing)) overrides.push_back(size);
+  overrides.push_back(fmt::format("time.end_s={}", end));
   const auto simulation = start(setting, overrides);
   advance(*simulation, end);
   const scene::Scene& scene = simulation->scene();
@@ -62,7 +58,8 @@ MeltedStrip melt_strip(const Setting& setting, double spacing, double end, scene
   MeltedStrip result;
   for (std::size_t i = 0; i < p.size(); ++i)
     if (!p.is_wall(i))
-      result.front += scene.material.liquid_fraction(p.h[i]) * p.mass[i] / (scene.material.density * height);
+      result.front += scene.material.liquid_fraction(p.h[i]) * p.mass[i] /
+                      (scene.material.density * strip_height(spacing));
   const double initial = scene.domain.bodies[0].temperature;
   const Neumann exact =
       neumann(scene, initial < scene.material.solidus ? initial : melting_point(scene.material));

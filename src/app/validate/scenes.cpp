@@ -18,6 +18,20 @@ std::vector<Model> collapse_models() {
           {"isph", {"flow.solver=isph", "terms.artificial_viscosity=false", "flow.shifting=4"}}};
 }
 
+double strip_height(double spacing) {
+  return 12 * spacing;
+}
+
+scene::Overrides strip(double length, double spacing) {
+  const double height = strip_height(spacing);
+  return {fmt::format("domain.spacing_m={}", spacing), fmt::format("domain.max_m=[{},{}]", length, height),
+          fmt::format("bodies.0.max_m=[{},{}]", length, height)};
+}
+
+double smoothing_length(const scene::Scene& scene) {
+  return scene.domain.smoothing_ratio * scene.domain.spacing;
+}
+
 void advance(scene::Simulation& simulation, double end, const std::function<void()>& watch) {
   while (simulation.time() < end) {
     simulation.step(end);

@@ -23,6 +23,15 @@ struct Model {
 /// Both solvers for collapsing columns, whose case files are WCSPH.
 std::vector<Model> collapse_models();
 
+/// Size of a 2-D strip along x of which the body of the case is all: twelve particles across, as a periodic
+/// direction has to be three supports long. `length` and `spacing` [m].
+scene::Overrides strip(double length, double spacing);
+/// Height of that strip [m].
+double strip_height(double spacing);
+
+/// h of a scene whose particles are all alike [m].
+double smoothing_length(const scene::Scene& scene);
+
 /// Steps until `end` [s]; `watch` is called after every step.
 void advance(scene::Simulation& simulation, double end, const std::function<void()>& watch = {});
 

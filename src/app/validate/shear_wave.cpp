@@ -22,10 +22,6 @@ double amplitude(const Particles& p) {
   return 2 * sum / static_cast<double>(p.size());
 }
 
-double smoothing_length(const scene::Scene& scene) {
-  return scene.domain.smoothing_ratio * scene.domain.spacing;
-}
-
 /// Kinematic viscosity of the lattice over alpha c h. In shear every second pair approaches, so that nu k^2 =
 /// -(1/2) alpha c h sum_j V F x^2 / (r^2 + 0.01 h^2) (1 - cos kz). It is exact for particles in their places.
 double lattice_viscosity(const scene::Scene& scene) {

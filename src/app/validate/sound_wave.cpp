@@ -35,10 +35,6 @@ struct Wave {
   double seconds = 0;
 };
 
-double smoothing_length(const scene::Scene& scene) {
-  return scene.domain.smoothing_ratio * scene.domain.spacing;
-}
-
 /// Rate at which a diffusion D of the density takes its share of the amplitude, D k^2 / 2 with D = delta h c.
 /// Antuono's form diffuses nothing that is smooth.
 double diffusion_rate(const scene::Scene& scene) {

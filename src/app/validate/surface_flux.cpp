@@ -23,16 +23,13 @@ struct Instant {
 std::vector<Instant> run(const Setting& setting, const Metal& metal, double spacing,
                          const std::vector<double>& times) {
   const Watch watch;
-  const double height = 12 * spacing;
   const double length = 6 * std::sqrt(metal.conductivity / (metal.density * metal.capacity) * times.back());
   const double whole = std::ceil(length / spacing) * spacing;
-  const auto simulation =
-      start(setting,
-            {fmt::format("domain.spacing_m={}", spacing), fmt::format("domain.max_m=[{},{}]", whole, height),
-             fmt::format("bodies.0.max_m=[{},{}]", whole, height),
-             fmt::format("material.conductivity_solid_w_m_k={}", metal.conductivity),
-             fmt::format("material.density_kg_m3={}", metal.density),
-             fmt::format("material.heat_capacity_solid_j_kg_k={}", metal.capacity)});
+  scene::Overrides overrides = strip(whole, spacing);
+  overrides.insert(overrides.end(), {fmt::format("material.conductivity_solid_w_m_k={}", metal.conductivity),
+                                     fmt::format("material.density_kg_m3={}", metal.density),
+                                     fmt::format("material.heat_capacity_solid_j_kg_k={}", metal.capacity)});
+  const auto simulation = start(setting, overrides);
   std::vector<Instant> instants;
   for (const double t : times) {
     advance(*simulation, t);

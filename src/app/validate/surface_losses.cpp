@@ -47,12 +47,9 @@ Cooled run(const Setting& setting, const Loss& loss, double spacing) {
   const double conductivity = m.conductivity_liquid(m.boiling_temperature),
                stored = m.density * m.heat_capacity_liquid;
   const double length = std::ceil(6 * std::sqrt(conductivity / stored * loss.time) / spacing) * spacing;
-  const double height = 12 * spacing;  // a periodic direction has to be three supports long
-  scene::Overrides all = loss.overrides;
-  all.insert(
-      all.end(),
-      {fmt::format("domain.spacing_m={}", spacing), fmt::format("domain.max_m=[{},{}]", length, height),
-       fmt::format("bodies.0.max_m=[{},{}]", length, height), fmt::format("time.end_s={}", loss.time)});
+  scene::Overrides all = strip(length, spacing);
+  all.insert(all.end(), loss.overrides.begin(), loss.overrides.end());
+  all.push_back(fmt::format("time.end_s={}", loss.time));
   const auto simulation = start(setting, all);
   advance(*simulation, loss.time);
   const scene::Scene& scene = simulation->scene();
@@ -60,7 +57,7 @@ Cooled run(const Setting& setting, const Loss& loss, double spacing) {
   const CooledHalfSpace exact = cool_half_space(std::sqrt(conductivity * stored), initial, loss.time, 4000,
                                                 [&](double t) { return loss.flux(scene, t); });
   const scene::EnergyBudget energy = simulation->energy();
-  return {(energy.evaporation + energy.radiation) / height,
+  return {(energy.evaporation + energy.radiation) / strip_height(spacing),
           exact.lost,
           initial - surface_temperature(simulation->particles(), spacing),
           initial - exact.surface,

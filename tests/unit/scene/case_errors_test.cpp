@@ -377,6 +377,11 @@ TEST_CASE("case file: terms that nothing flows by") {
   // Switched off later, on purpose.
   CHECK(message({"", weld, {}, {"terms.pressure=false"}}) == "(accepted)");
   CHECK(message({"", weld, {}, {"terms.melting=false"}}) == "(accepted)");
+  // So does the resolved case of such a run, which gives all keys in one layer.
+  for (const std::string set : {"terms.pressure=false", "terms.melting=false"}) {
+    const std::string resolved = meltray::scene::write_case(read_case_text(weld, "a.toml", {set}));
+    CHECK(message({"", resolved, {}}) == "(accepted)");
+  }
 }
 
 TEST_CASE("case file: properties that leave their range over temperature") {
@@ -392,13 +397,12 @@ TEST_CASE("case file: properties that leave their range over temperature") {
        {"found -52 at 10000 K"}},
   });
   const std::string held = "{form=\"linear\", value=30, slope=-0.01, reference_k=1800, max_k=3000}";
-  CHECK(message({"", conductivity(held)}) == "(accepted)");
+  CHECK(message({"", conductivity(held), {}}) == "(accepted)");
   // Surface tension has a floor.
-  CHECK(
-      message(
-          {"", added(weld, "material",
-                     "surface_tension_n_m = {form=\"linear\", value=1.8, slope=-4e-4, reference_k=1811}")}) ==
-      "(accepted)");
+  CHECK(message({"",
+                 added(weld, "material",
+                       "surface_tension_n_m = {form=\"linear\", value=1.8, slope=-4e-4, reference_k=1811}"),
+                 {}}) == "(accepted)");
 }
 
 TEST_CASE("case file: what a scene cannot do") {
