@@ -94,6 +94,15 @@ void check_terms(const Scene& scene, const Document& document) {
   if (t.recoil && scene.surface.recoil_pressure == 0 && !heated(scene))
     inert(document, "terms.recoil", "nothing heats the material and it starts cold",
           "a laser, a hot face, a flux, a liquid body or surface.recoil_pressure_pa with it");
+  if (scene.surface.temperature == SurfaceTemperature::face) {
+    const char* key = "surface.temperature";
+    if (!t.conduction)
+      refuse(document.place(key), key, "\"face\" without terms.conduction, which ties it to the particle",
+             "\"particle\", or terms.conduction = true");
+    if (t.recoil && scene.surface.recoil_pressure == 0 && !t.evaporation)
+      refuse(document.place(key), key, "\"face\" with recoil but without the vapour that cools it",
+             "\"particle\", or terms.evaporation = true");
+  }
   if (t.interface_viscosity && scene.flow.reference_speed == 0)
     refuse(document.place("flow.reference_speed_m_s"), "flow.reference_speed_m_s",
            "0, which switches terms.interface_viscosity off", "a number > 0 [m/s]");

@@ -99,7 +99,21 @@ std::vector<Key> surface_keys() {
   const Need prescribed = {"surface.recoil_pressure_pa > 0",
                            {"surface.recoil_pressure_pa"},
                            [](const Scene& s, int) { return s.surface.recoil_pressure > 0; }};
+  const Need hot = {"terms.evaporation, terms.radiation, or terms.recoil of the vapour",
+                    {"terms.evaporation", "terms.radiation", "terms.recoil"},
+                    [](const Scene& s, int) {
+                      return s.terms.evaporation || s.terms.radiation ||
+                             (s.terms.recoil && s.surface.recoil_pressure == 0);
+                    }};
   return {
+      word<SurfaceTemperature>(
+          "surface.temperature",
+          {{"particle", SurfaceTemperature::particle}, {"face", SurfaceTemperature::face}},
+          MELTRAY_AT(surface.temperature),
+          "Where the temperature is taken at which surfaces evaporate, radiate and feel recoil: at the "
+          "outermost particles, half a spacing below the face, or at the face, from what it absorbs, loses "
+          "and conducts.")
+          .only_if(hot),
       word<SurfaceEntry>("surface.entry", {{"csf", SurfaceEntry::csf}, {"pressure", SurfaceEntry::pressure}},
                          MELTRAY_AT(surface.entry),
                          "Surface forces act as volume forces (csf) or as the pressure at the surface.")

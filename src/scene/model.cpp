@@ -51,7 +51,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   interface_ = {flow.interface_viscosity_free, flow.interface_viscosity_solid, flow.reference_speed,
                 flow.interface_viscosity_ramp};
   losses_ = {scene.terms.evaporation, scene.terms.radiation, scene.surface.evaporation_coefficient,
-             scene.surface.ambient_temperature};
+             scene.surface.ambient_temperature, scene.surface.temperature == SurfaceTemperature::face};
   tension_.ramp = scene.surface.activation_ramp;
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
   recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient,
@@ -151,12 +151,25 @@ void Model::evaluate_patch(double t, bool rests) {
     pairs.refresh(patch, constants_.kernel);
   }
   parallel_for(stage.size(), [&](Index i) { update_temperature(i); });
+  stage.face_temperature.clear();
   if (weakly_compressible()) acoustic_->state.update(stage);
   if (has_elastic_solid()) elastic_->update(stage);
   if (rests)
     forget_coefficients();
   else
     update_surface();
+}
+
+void Model::settle_faces() {
+  if (!losses_.at_face) return;
+  find_faces();
+  if (weakly_compressible()) update_surface_pressure();
+}
+
+void Model::find_faces() {
+  if (!losses_.at_face) return;
+  const auto timer = timers_.measure(Part::heat);
+  losses_.find_faces(stage, laser_power);
 }
 
 void Model::update_temperature(Index i) {
@@ -192,7 +205,10 @@ void Model::evaluate(double t, const double* y) {
   if (still && same_h && (same || holds_rest(y)) && t == stage.t) return;
   stage.t = t;
   unpack(y);
-  if (!same_h) update_heated_temperatures();
+  if (!same_h) {
+    update_heated_temperatures();
+    find_faces();
+  }
 
   // With one projection a step the scheme is first order in the geometry anyway: pairs, surface and the
   // coefficients that rest on them are those of the start of the step. A weakly compressible step is so short
@@ -229,7 +245,7 @@ void Model::update_surface_pressure() {
   if (terms.recoil)
     parallel_for(stage.size(), [&](Index i) {
       if (patch.liquid[i] && stage.surface[i] > 0)
-        surface_pressure_[i] += recoil_.pressure(constants_.material, stage.temperature[i], stage.t);
+        surface_pressure_[i] += recoil_.pressure(constants_.material, stage.surface_temperature(i), stage.t);
     });
   terms::average_surface_pressure(stage, surface_pressure_);
 }

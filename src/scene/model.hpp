@@ -55,6 +55,9 @@ class Model : public OdeProblem {
   /// Geometry, temperatures and surface of the patch as it is; where it `rests`, geometry and surface are
   /// those of the last call. The stage must have been prepared for it.
   void evaluate_patch(double t, bool rests = false);
+  /// Temperatures of the faces, and what rests on them, once light has been brought to the evaluated patch;
+  /// nothing in scenes that go by the temperature of the particles.
+  void settle_faces();
   /// Copies the evaluated patch into y and describes its fields.
   void pack(std::vector<double>& y, std::vector<StateField>& fields);
   /// Copies y into the patch and makes geometry, temperatures and surface those of y.
@@ -126,6 +129,7 @@ class Model : public OdeProblem {
   void update_surface();
   void forget_coefficients();
   void update_surface_pressure();
+  void find_faces();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
   terms::ViscousOperator& viscous_operator(bool implicit_part);
   void add_viscous(bool implicit_part, const MutField& acceleration);

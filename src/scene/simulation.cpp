@@ -116,6 +116,7 @@ void Simulation::Impl::prepare() {
     laser->deposit(model.stage, model.laser_power);
     deposited = true;
   }
+  model.settle_faces();
   if (model.needs_pairs()) mark_surface(model.stage.surface);
   prepared = true;
 }

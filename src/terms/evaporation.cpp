@@ -21,6 +21,60 @@ double SurfaceLosses::mass_flux_slope(const Material& m, double temperature) con
          (m.saturation_pressure_slope(temperature) - 0.5 * m.saturation_pressure(temperature) / temperature);
 }
 
+double SurfaceLosses::flux(const Stage& s, Index i, double t) const {
+  const Material& m = s.constants->material;
+  double q = 0;
+  if (evaporation && s.patch->liquid[i]) q += mass_flux(m, t) * m.latent_heat_vaporisation;
+  if (radiation) q += m.emissivity * stefan_boltzmann * (t * t * t * t - std::pow(ambient_temperature, 4));
+  return q;
+}
+
+double SurfaceLosses::flux_slope(const Stage& s, Index i, double t) const {
+  const Material& m = s.constants->material;
+  double slope = 0;
+  if (evaporation && s.patch->liquid[i])
+    slope += m.latent_heat_vaporisation * std::max(0.0, mass_flux_slope(m, t));
+  if (radiation) slope += 4 * m.emissivity * stefan_boltzmann * t * t * t;
+  return slope;
+}
+
+namespace {
+
+/// Conductance between a particle's centre and its face [W/(m^2 K)].
+double conductance(const Stage& s, Index i) {
+  const double layer = std::min(s.volume[i] / s.area[i], s.constants->spacing);
+  return 2 * s.constants->material.conductivity(s.patch->h[i]) / layer;
+}
+
+/// Vapour of so many times the boiling temperature carries away what any light brings; up to there the flux
+/// is convex in T.
+constexpr double kHottestFace = 3;
+constexpr double kFaceTolerance = 1e-3;  // [K]
+constexpr int kFaceIterations = 60;
+
+}  // namespace
+
+void SurfaceLosses::find_faces(Stage& s, const std::vector<double>& light) const {
+  s.face_temperature = s.temperature;
+  parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t k) {
+    const Index i = s.heated[k];
+    if (s.area[i] == 0) return;
+    const double g = conductance(s, i), inside = s.temperature[i],
+                 absorbed = light.empty() ? 0.0 : light[i] / s.area[i];
+    // What is conducted less what is left over is convex and grows with T_s: from above Newton's method falls
+    // to the root without ever passing it.
+    double t = std::max(inside, ambient_temperature) + absorbed / g;
+    if (evaporation)
+      t = std::min(t, std::max(inside, kHottestFace * s.constants->material.boiling_temperature));
+    for (int iteration = 0; iteration < kFaceIterations; ++iteration) {
+      const double step = (g * (t - inside) + flux(s, i, t) - absorbed) / (g + flux_slope(s, i, t));
+      t -= step;
+      if (std::abs(step) < kFaceTolerance) break;
+    }
+    s.face_temperature[i] = t;
+  });
+}
+
 void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& crossings) const {
   const Material& m = s.constants->material;
   struct Sum {
@@ -33,7 +87,7 @@ void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& cros
         for (std::ptrdiff_t k = begin; k < end; ++k) {
           const Index i = s.heated[k];
           if (s.area[i] == 0) continue;
-          const double t = s.temperature[i];
+          const double t = s.surface_temperature(i);
           double loss = 0;
           if (evaporation && s.patch->liquid[i]) {
             const double rate = s.area[i] * mass_flux(m, t);
@@ -59,29 +113,23 @@ void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& cros
   crossings.evaporated_mass += total.mass;
 }
 
+/// d(power)/dT of a surface particle [W/K]: a face follows its particle by g / (g + q').
+double SurfaceLosses::slope_of(const Stage& s, Index i) const {
+  const double slope = flux_slope(s, i, s.surface_temperature(i));
+  if (s.face_temperature.empty()) return -s.area[i] * slope;
+  const double g = conductance(s, i);
+  return -s.area[i] * slope * g / (g + slope);
+}
+
 void SurfaceLosses::slope(const Stage& s, double* slope) const {
-  const Material& m = s.constants->material;
-  parallel_for(s.size(), [&](Index i) {
-    slope[i] = 0;
-    if (s.area[i] == 0 || !s.heat[i]) return;
-    const double t = s.temperature[i];
-    if (evaporation && s.patch->liquid[i])
-      slope[i] -= s.area[i] * m.latent_heat_vaporisation * std::max(0.0, mass_flux_slope(m, t));
-    if (radiation) slope[i] -= s.area[i] * 4 * m.emissivity * stefan_boltzmann * t * t * t;
-  });
+  parallel_for(s.size(), [&](Index i) { slope[i] = s.area[i] == 0 || !s.heat[i] ? 0.0 : slope_of(s, i); });
 }
 
 double SurfaceLosses::rate(const Stage& s) const {
-  const Material& m = s.constants->material;
   return parallel_max(static_cast<std::ptrdiff_t>(s.heated.size()), 0.0, [&](std::ptrdiff_t k) {
     const Index i = s.heated[k];
     if (s.area[i] == 0) return 0.0;
-    const double t = s.temperature[i];
-    double slope = 0;
-    if (evaporation && s.patch->liquid[i])
-      slope += s.area[i] * m.latent_heat_vaporisation * mass_flux_slope(m, t);
-    if (radiation) slope += s.area[i] * 4 * m.emissivity * stefan_boltzmann * t * t * t;
-    return slope / s.patch->mass[i] * m.temperature_slope(s.patch->h[i]);
+    return -slope_of(s, i) / s.patch->mass[i] * s.constants->material.temperature_slope(s.patch->h[i]);
   });
 }
 

@@ -87,7 +87,7 @@ double Stage::area_of_spacing() const {
 
 std::size_t Stage::bytes() const {
   return held_bytes(volume, temperature, heat, lit, moving, heated, elastic, excess, fill, diagonal, exposure,
-                    surface, area, surface_pressure, loose) +
+                    surface, area, face_temperature, surface_pressure, loose) +
          held_bytes(grad_c) + held_bytes(normal) + held_bytes(wall_normal);
 }
 
@@ -116,7 +116,7 @@ void prepare_stage(Stage& s, bool with_surface) {
 
 void release_fields(Stage& s) {
   free_memory(s.volume, s.temperature, s.excess, s.fill, s.diagonal, s.exposure, s.surface, s.area,
-              s.surface_pressure, s.grad_c, s.normal, s.wall_normal);
+              s.face_temperature, s.surface_pressure, s.grad_c, s.normal, s.wall_normal);
 }
 
 void compute_surface(Stage& s) {

@@ -295,6 +295,20 @@ class Weld(Switches):
         self.assertLess(without["capillary_depth_m"][-1], 0.2 * history(self.reference)["capillary_depth_m"][-1])
         self.assertLess(without["max_speed_m_s"].max(), 1.0)
 
+    def test_recoil_at_the_face_drills_before_particles_boil(self):
+        """Light heats the face half a spacing above a particle's centre: melt is pushed while it is colder inside."""
+        reference = history(self.reference)
+        face, result = self.weld('surface.temperature="face"')
+        self.assertGreater(face["capillary_depth_m"][-1], 1.2 * reference["capillary_depth_m"][-1])
+        self.assertLess(face["max_temperature_k"][-1], reference["max_temperature_k"][-1] - 500)
+        self.assertLess(abs(result["budgets"]["energy"]["relative_error"]), 1e-12)
+        wcsph = ('model="wcsph_reduced"', "terms.interface_viscosity=false", 'time.method="multirate"',
+                 "time.fixed_step_s=1e-6", "time.cfl_acoustic=1", "flow.sound_speed_m_s=140",
+                 "flow.artificial_viscosity=0.35")
+        weak, weak_face = (self.weld(*wcsph, f'surface.temperature="{where}"')[0] for where in ("particle", "face"))
+        self.assertGreater(weak_face["capillary_depth_m"][-1], 1.2 * weak["capillary_depth_m"][-1])
+        self.assertLess(weak_face["max_temperature_k"][-1], weak["max_temperature_k"][-1] - 500)
+
     def test_evaporation_limits_the_temperature(self):
         """On a surface that stays flat (no recoil): what evaporation carries away is missing in the hottest particle."""
         cool, _ = self.weld("terms.recoil=false")

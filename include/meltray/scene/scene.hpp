@@ -107,8 +107,13 @@ struct Flow {
   double interface_viscosity_ramp = 50;  ///< [K] above the melting point over which alpha_SL acts
 };
 
+/// Temperature at which a surface evaporates, radiates and feels recoil: that of its outermost particles,
+/// whose centres stand half a spacing below the face, or that of the face itself.
+enum class SurfaceTemperature { particle, face };
+
 /// [surface]: free surface, surface tension, recoil, evaporation.
 struct Surface {
+  SurfaceTemperature temperature = SurfaceTemperature::particle;
   SurfaceEntry entry = SurfaceEntry::csf;
   RecoilOnset recoil_onset = RecoilOnset::smooth;
   double recoil_coefficient = 0.54;       ///< of the saturation pressure

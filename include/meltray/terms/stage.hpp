@@ -65,10 +65,15 @@ struct Stage {
   Components normal;             ///< unit normal out of the material (zero where surface = 0)
   Components wall_normal;        ///< normal that a wall prescribes times its share; empty without wetting
   std::vector<double> area;      ///< free-surface area carried by a particle [m^2; m in 2-D]
+  std::vector<double> face_temperature;  ///< [K]; empty where the particles' own temperature stands for it
   std::vector<double> surface_pressure;  ///< recoil + sigma kappa, averaged over surface neighbours [Pa]
   std::vector<std::uint8_t> loose;  ///< liquid with too few neighbours to be a fluid: flies ballistically
 
   Index size() const { return patch->size(); }
+  /// Of the face that a particle carries, where it is known, else of the particle [K].
+  double surface_temperature(Index i) const {
+    return face_temperature.empty() ? temperature[i] : face_temperature[i];
+  }
   double area_of_spacing() const;
   std::size_t bytes() const;
 };

@@ -41,7 +41,8 @@ struct Cooled {
   double budget = 0, seconds = 0;
 };
 
-Cooled run(const Setting& setting, const Loss& loss, double spacing) {
+/// place: surface.temperature.
+Cooled run(const Setting& setting, const Loss& loss, const char* place, double spacing) {
   const Watch watch;
   const Material& m = scene::read_case(setting.folder / "case.toml").material;
   const double conductivity = m.conductivity_liquid(m.boiling_temperature),
@@ -50,6 +51,7 @@ Cooled run(const Setting& setting, const Loss& loss, double spacing) {
   scene::Overrides all = strip(length, spacing);
   all.insert(all.end(), loss.overrides.begin(), loss.overrides.end());
   all.push_back(fmt::format("time.end_s={}", loss.time));
+  all.push_back(fmt::format("surface.temperature=\"{}\"", place));
   const auto simulation = start(setting, all);
   advance(*simulation, loss.time);
   const scene::Scene& scene = simulation->scene();
@@ -76,21 +78,22 @@ Rows surface_losses(const Setting& setting) {
       {"evaporation", {}, 1e-3, fine, evaporation},
       {"radiation", {"terms.evaporation=false", "terms.radiation=true"}, 1, wide, radiation}};
   Rows rows;
-  for (const Loss& loss : losses) {
-    Rows lost, fall, budgets;
-    for (const double spacing : loss.spacings) {
-      const Cooled c = run(setting, loss, spacing);
-      const Measured how{resolution_text(spacing), c.seconds, "Duhamel's integral of the flux q(T)"};
-      lost.push_back(relative_row(loss.name + ": heat lost [J/m2]", c.lost, c.expected_lost, 0.03, how));
-      fall.push_back(relative_row(loss.name + ": fall of the surface temperature [K]", c.fall,
-                                  c.expected_fall, 0.03, how));
-      budgets.push_back(
-          limit_row(loss.name + ": heat taken from the metal = heat lost", c.budget, 1e-10, how));
+  for (const Loss& loss : losses)
+    for (const auto& [place, line] : {std::pair{"particle", 0.03}, {"face", 0.01}}) {
+      const std::string name = fmt::format("{}, T of the {}: ", loss.name, place);
+      Rows lost, fall, budgets;
+      for (const double spacing : loss.spacings) {
+        const Cooled c = run(setting, loss, place, spacing);
+        const Measured how{resolution_text(spacing), c.seconds, "Duhamel's integral of the flux q(T)"};
+        lost.push_back(relative_row(name + "heat lost [J/m2]", c.lost, c.expected_lost, line, how));
+        fall.push_back(
+            relative_row(name + "fall of the surface temperature [K]", c.fall, c.expected_fall, line, how));
+        budgets.push_back(limit_row(name + "heat taken from the metal = heat lost", c.budget, 1e-10, how));
+      }
+      add_series(rows, loss.spacings, lost);
+      add_series(rows, loss.spacings, fall);
+      rows.insert(rows.end(), budgets.begin(), budgets.end());
     }
-    add_series(rows, loss.spacings, lost);
-    add_series(rows, loss.spacings, fall);
-    rows.insert(rows.end(), budgets.begin(), budgets.end());
-  }
   return rows;
 }
 

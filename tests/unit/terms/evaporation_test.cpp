@@ -91,6 +91,69 @@ TEST_CASE("evaporation: a flat liquid face loses area times flux, and the crossi
   CHECK(losses.rate(s.stage) == Approx(fastest));
 }
 
+TEST_CASE("evaporation: at a face light, losses and conduction over half a layer balance") {
+  StageSetup s(3, kDx);
+  layer(s, 3300);
+  const SurfaceLosses losses{true, true, 0.82, 300, true};
+  const double conductance = 35 / (0.5 * kDx);
+  for (const double flux : {0.0, 1e8, 1e9, 1e10, 1e13}) {
+    std::vector<double> light(s.patch.size());
+    for (Index i = 0; i < s.patch.size(); ++i) light[i] = flux * s.stage.area[i];
+    losses.find_faces(s.stage, light);
+    double coldest = 1e9, hottest = 0;
+    for (Index i = 0; i < s.patch.size(); ++i) {
+      const double t = s.stage.face_temperature[i];
+      CHECK(s.stage.surface_temperature(i) == t);
+      if (s.stage.area[i] == 0) {
+        CHECK(t == s.stage.temperature[i]);
+        continue;
+      }
+      const double p_sat = 101325 * std::exp(6e6 * 0.056 / constants::gas_constant * (1 / 3100.0 - 1 / t));
+      const double lost = 0.82 * p_sat * std::sqrt(0.056 / (2 * M_PI * constants::gas_constant * t)) * 6e6 +
+                          0.5 * constants::stefan_boltzmann * (std::pow(t, 4) - std::pow(300.0, 4));
+      // Face and dummies are flat: the layer is one spacing thick.
+      CHECK(flux - lost == Approx(conductance * (t - 3300)).margin(1e-5 * (flux + lost)));
+      coldest = std::min(coldest, t);
+      hottest = std::max(hottest, t);
+    }
+    CHECK((flux < 1e9 ? hottest < 3300 : coldest > 3300));
+  }
+  // In the dark the loss is that of the faces, not of the particles.
+  losses.find_faces(s.stage, {});
+  std::vector<double> heating(s.patch.size(), 0.0);
+  terms::Crossings at_faces, at_particles;
+  losses.add_heating(s.stage, heating.data(), at_faces);
+  s.stage.face_temperature.clear();
+  losses.add_heating(s.stage, heating.data(), at_particles);
+  CHECK(at_faces.evaporation < 0.7 * at_particles.evaporation);
+}
+
+TEST_CASE("evaporation: the slope of the losses at a face is that over the temperature of its particle") {
+  StageSetup s(3, kDx);
+  layer(s, 3300);
+  const Material& m = s.constants.material;
+  const SurfaceLosses losses{true, true, 0.82, 300, true};
+  std::vector<double> light(s.patch.size()), slope(s.patch.size());
+  for (Index i = 0; i < s.patch.size(); ++i) light[i] = 2e9 * s.stage.area[i];
+  losses.find_faces(s.stage, light);
+  losses.slope(s.stage, slope.data());
+  double sum = 0, fastest = 0;
+  for (Index i = 0; i < s.patch.size(); ++i) {
+    sum += slope[i];
+    fastest = std::max(fastest, -slope[i] / s.patch.mass[i] / m.heat_capacity_liquid);
+  }
+  CHECK(losses.rate(s.stage) == Approx(fastest));
+  const auto total = [&](double t) {
+    s.set_temperature([&](const Vec3&) { return t; });
+    losses.find_faces(s.stage, light);
+    std::vector<double> h(s.patch.size(), 0.0);
+    terms::Crossings p;
+    losses.add_heating(s.stage, h.data(), p);
+    return p.evaporation + p.radiation;
+  };
+  CHECK(sum == Approx(-(total(3300.5) - total(3299.5))).epsilon(1e-4));
+}
+
 TEST_CASE("evaporation: solid only radiates, and a term that is off does nothing") {
   StageSetup s(3, kDx);
   layer(s, 1700);
