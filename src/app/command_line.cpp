@@ -142,7 +142,9 @@ class CommandLine {
     c->add_option("--seeds", paper_.seeds, "1: the lattice; n: n disturbed lattices")
         ->check(CLI::Range(1, 1000));
     c->add_option("--until", paper_.until, "End of every run [s]")->check(CLI::Range(1e-12, 1e3));
-    c->add_option("--out", paper_.out, "Folder of runs and results [default: runs/paper]");
+    add_settings(c, paper_.set);
+    c->add_option("--out", paper_.out,
+                  "Folder of runs and results [default: runs/paper; with --set another one has to be given]");
     c->add_flag("--list", paper_.list, "Only print the commands that are still to run, for a batch system");
     c->add_option("--threads", paper_.threads, "Threads [default: all cores]")->check(kThreads);
     c->callback([this] { command_ = [this] { return study_paper(paper_); }; });

@@ -85,9 +85,9 @@ RunLoop::RunLoop(scene::Simulation& simulation, observe::RunFolder& folder, obse
       snapshots_(folder.path(), simulation.time() * (1 + kSameTime)),
       progress_(options_.quiet, simulation.time(), options_.end),
       began_(std::chrono::steady_clock::now()),
-      scheduled_time_(simulation.time()),
       start_time_(simulation.time()),
-      wall_before_(state_.wall_seconds) {
+      wall_before_(state_.wall_seconds),
+      scheduled_time_(simulation.time()) {
   auto rows = observe::read_history(folder.file("history.csv"));
   const auto &times = rows["time_s"], &variations = rows["density_variation"];
   if (!times.empty()) row_time_ = times.back();

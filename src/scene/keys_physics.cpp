@@ -111,7 +111,8 @@ std::vector<Key> surface_keys() {
           {{"particle", SurfaceTemperature::particle}, {"face", SurfaceTemperature::face}},
           MELTRAY_AT(surface.temperature),
           "Where the temperature is taken at which surfaces evaporate, radiate and feel recoil: at the "
-          "outermost particles, half a spacing below the face, or at the face, from what it absorbs, loses "
+          "outermost particles, half a spacing below the face, or at the face of melt, from what it absorbs, "
+          "loses "
           "and conducts.")
           .only_if(hot),
       word<SurfaceEntry>("surface.entry", {{"csf", SurfaceEntry::csf}, {"pressure", SurfaceEntry::pressure}},

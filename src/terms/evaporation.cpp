@@ -2,6 +2,7 @@
 #include "meltray/terms/evaporation.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "meltray/core/constants.hpp"
 
@@ -46,26 +47,33 @@ double conductance(const Stage& s, Index i) {
   return 2 * s.constants->material.conductivity(s.patch->h[i]) / layer;
 }
 
-/// Vapour of so many times the boiling temperature carries away what any light brings; up to there the flux
-/// is convex in T.
-constexpr double kHottestFace = 3;
 constexpr double kFaceTolerance = 1e-3;  // [K]
 constexpr int kFaceIterations = 60;
 
 }  // namespace
 
+/// Temperature at which vapour alone carries a flux away [K]: of Hertz and Knudsen's flux that of the boiling
+/// point with Clausius and Clapeyron's exponential, which is right but for a root of T.
+double SurfaceLosses::temperature_of_vapour(const Material& m, double absorbed) const {
+  const double boiling = m.boiling_temperature,
+               at_boiling = mass_flux(m, boiling) * m.latent_heat_vaporisation;
+  const double inverse = 1 / boiling - gas_constant / (m.latent_heat_vaporisation * m.molar_mass) *
+                                           std::log(absorbed / at_boiling);
+  return inverse > 0 ? 1 / inverse : std::numeric_limits<double>::infinity();
+}
+
 void SurfaceLosses::find_faces(Stage& s, const std::vector<double>& light) const {
   s.face_temperature = s.temperature;
   parallel_for(static_cast<std::ptrdiff_t>(s.heated.size()), [&](std::ptrdiff_t k) {
     const Index i = s.heated[k];
-    if (s.area[i] == 0) return;
+    if (s.area[i] == 0 || !s.patch->liquid[i]) return;
     const double g = conductance(s, i), inside = s.temperature[i],
                  absorbed = light.empty() ? 0.0 : light[i] / s.area[i];
-    // What is conducted less what is left over is convex and grows with T_s: from above Newton's method falls
-    // to the root without ever passing it.
-    double t = std::max(inside, ambient_temperature) + absorbed / g;
-    if (evaporation)
-      t = std::min(t, std::max(inside, kHottestFace * s.constants->material.boiling_temperature));
+    // From the lower of what conduction and vapour alone would give, which is near. The residual grows with
+    // T_s and is convex: from above Newton's method falls to the root without ever passing it.
+    double t = inside + absorbed / g;
+    if (evaporation && absorbed > 0)
+      t = std::min(t, std::max(inside, temperature_of_vapour(s.constants->material, absorbed)));
     for (int iteration = 0; iteration < kFaceIterations; ++iteration) {
       const double step = (g * (t - inside) + flux(s, i, t) - absorbed) / (g + flux_slope(s, i, t));
       t -= step;
@@ -116,7 +124,7 @@ void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& cros
 /// d(power)/dT of a surface particle [W/K]: a face follows its particle by g / (g + q').
 double SurfaceLosses::slope_of(const Stage& s, Index i) const {
   const double slope = flux_slope(s, i, s.surface_temperature(i));
-  if (s.face_temperature.empty()) return -s.area[i] * slope;
+  if (s.face_temperature.empty() || !s.patch->liquid[i]) return -s.area[i] * slope;
   const double g = conductance(s, i);
   return -s.area[i] * slope * g / (g + slope);
 }

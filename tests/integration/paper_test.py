@@ -43,6 +43,19 @@ class Paper(Scratch):
         self.paper(*part)
         self.assertEqual((folder / "iron-500hz-isph-seed0" / "summary.json").stat().st_mtime_ns, summary)
 
+    def test_settings_of_ones_own(self):
+        """They win over those of the row, and never mix with the runs of the paper's own cases."""
+        part = ["--metals", "iron", "--frequencies", "500", "--models", "wcsph_reduced", "--list",
+                "--set", "flow.artificial_viscosity=0.2", "--set", 'surface.temperature="face"']
+        lines = self.paper(*part).splitlines()
+        self.assertEqual(len(lines), 1)
+        self.assertEqual(lines[0].count("flow.artificial_viscosity"), 1)
+        self.assertIn("flow.artificial_viscosity=0.2", lines[0])
+        self.assertIn("surface.temperature=", lines[0])
+        done = meltray("study", "paper", *part)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--out", done.stderr)
+
     def test_unknown_model(self):
         done = meltray("study", "paper", "--models", "sph")
         self.assertEqual(done.returncode, 2)

@@ -55,8 +55,9 @@ struct PaperArguments {
   std::vector<std::string> metals{"iron", "aluminium"};
   std::vector<int> frequencies{100, 250, 500};  ///< [Hz]
   std::vector<std::string> models{"isph", "wcsph_reduced", "wcsph_reduced_interface"};
-  int seeds = 1;                ///< 1: the undisturbed lattice; n > 1: n disturbed ones
-  std::optional<double> until;  ///< [s]; default: the end of each case
+  int seeds = 1;                 ///< 1: the undisturbed lattice; n > 1: n disturbed ones
+  std::optional<double> until;   ///< [s]; default: the end of each case
+  std::vector<std::string> set;  ///< for every weld, over what its case and row of Table 1 say
   std::filesystem::path out = "runs/paper";
   bool list = false;  ///< print the commands that are still to run
   int threads = 0;

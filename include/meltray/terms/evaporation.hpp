@@ -10,8 +10,8 @@ namespace meltray::terms {
 /// and radiation q = -eps sigma_SB (T^4 - T_a^4). Both act on the particle's own surface area and are local:
 /// they have no neighbours. The mass is counted, not removed.
 ///
-/// T is that of the particle or, with `at_face`, of its face, T_s: what light brings and the losses leave is
-/// conducted over half the layer that the particle stands for,
+/// T is that of the particle or, with `at_face`, of the face of liquid, T_s: what light brings and the losses
+/// leave is conducted over half the layer that the particle stands for,
 ///   P / A - q(T_s) = 2 lambda (T_s - T) / d,  d = min(V / A, spacing).
 struct SurfaceLosses {
   bool evaporation = false, radiation = false;
@@ -37,6 +37,7 @@ struct SurfaceLosses {
   double flux(const Stage& stage, Index i, double temperature) const;
   double flux_slope(const Stage& stage, Index i, double temperature) const;
   double slope_of(const Stage& stage, Index i) const;
+  double temperature_of_vapour(const Material& m, double absorbed) const;
 };
 
 }  // namespace meltray::terms

@@ -79,6 +79,11 @@ std::vector<Weld> matrix(const PaperArguments& a) {
             w.set.insert(w.set.end(),
                          {"domain.arrangement=jittered", fmt::format("domain.jitter={}", kSeedJitter),
                           fmt::format("domain.seed={}", seed)});
+          for (const std::string& setting : a.set) {
+            const std::string key = setting.substr(0, setting.find('=') + 1);
+            std::erase_if(w.set, [&](const std::string& s) { return s.starts_with(key); });
+            w.set.push_back(setting);
+          }
           w.until = a.until.value_or(scene::read_case(w.case_file, w.set).time.end);
           welds.push_back(std::move(w));
         }
@@ -142,6 +147,11 @@ std::string ratios(const std::map<std::pair<std::string, int>, std::map<std::str
 }  // namespace
 
 int study_paper(const PaperArguments& a) {
+  if (!a.set.empty() && a.out == PaperArguments{}.out)
+    throw UsageError(
+        fmt::format("study paper: --set: found the folder of the runs without, {}; allowed "
+                    "with --out and another folder",
+                    a.out.string()));
   const auto welds = matrix(a);
   if (a.list) {
     for (const Weld& w : welds)
