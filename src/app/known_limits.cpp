@@ -26,6 +26,9 @@ constexpr double kWeldSteps = 4, kPoolSteps = 8, kCollapseSteps = 2;
 constexpr double kStageViscosity = 50;
 // Modulus of elastic solid, over the metal's own, with which welds of both metals held for a millisecond.
 constexpr double kWeldModulus = 0.01;
+// Strength of the interface viscosity below which vapour at the temperature of the particles throws melt out,
+// and above which vapour at that of the faces cannot push it away.
+constexpr double kFrontViscosity = 0.3;
 
 void step_factors(const Scene& s, std::vector<std::string>& found) {
   if (s.time.integrator.fixed_step > 0) return;
@@ -68,6 +71,25 @@ void full_boxes(const Scene& s, std::vector<std::string>& found) {
         "speed of the flow");
 }
 
+/// Melt under vapour at a front whose film is thinner than a particle: which interface viscosity goes with
+/// which temperature of its surface.
+void melt_at_the_front(const Scene& s, std::vector<std::string>& found) {
+  if (!s.laser || !s.terms.recoil || !s.terms.interface_viscosity) return;
+  const bool at_face = s.surface.temperature == scene::SurfaceTemperature::face;
+  const double least = std::min(s.flow.interface_viscosity_free, s.flow.interface_viscosity_solid),
+               most = std::max(s.flow.interface_viscosity_free, s.flow.interface_viscosity_solid);
+  if (at_face && most > kFrontViscosity)
+    found.push_back(
+        fmt::format("flow.interface_viscosity_*: {:g} with surface.temperature = \"face\"; melt that cannot "
+                    "leave the front evaporates there, and depth depends on the spacing: 0.1",
+                    most));
+  if (!at_face && least < kFrontViscosity)
+    found.push_back(fmt::format(
+        "flow.interface_viscosity_*: {:g} with surface.temperature = \"particle\"; melt that boils "
+        "before it moves is thrown out, with 0.1 a third of it: 1",
+        least));
+}
+
 }  // namespace
 
 std::vector<std::string> beyond_known_limits(const Scene& s) {
@@ -81,6 +103,7 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
                     "stiffness limits the step and may break the run down: splitting.projection = \"step\"",
                     strength, kStageViscosity));
   full_boxes(s, found);
+  melt_at_the_front(s, found);
   if (s.laser && scene::is_elastic(s) && s.flow.elastic_modulus_scale > kWeldModulus)
     found.push_back(fmt::format(
         "flow.elastic_modulus_scale: {:g} in a weld; with the whole modulus the solid of aluminium "

@@ -67,6 +67,23 @@ TEST_CASE("a weld in elastic solid of nearly its whole modulus is named") {
   CHECK(beyond_known_limits(s).empty());
 }
 
+TEST_CASE("an interface viscosity that does not go with the temperature of the surface is named") {
+  scene::Scene s;
+  s.terms.recoil = s.terms.interface_viscosity = true;
+  s.laser.emplace();
+  CHECK(beyond_known_limits(s).empty());
+  s.surface.temperature = scene::SurfaceTemperature::face;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.interface_viscosity_*: 1 with surface.temperature"));
+  s.flow.interface_viscosity_free = s.flow.interface_viscosity_solid = 0.1;
+  CHECK(beyond_known_limits(s).empty());
+  s.surface.temperature = scene::SurfaceTemperature::particle;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.interface_viscosity_*: 0.1 with surface.temperature"));
+  s.terms.recoil = false;
+  CHECK(beyond_known_limits(s).empty());
+}
+
 TEST_CASE("a full box of walls that looks for a free surface is named") {
   scene::Scene s;
   s.terms.pressure = true;
