@@ -86,6 +86,16 @@ class Restart(Scratch):
         self.finish(two, "--threads", "2")
         self.assert_same_results(one, two, "elastic solid")
 
+    def test_vapour_at_the_face(self):
+        """Faces are found anew from the state and the light, with both solvers."""
+        for model in (("model=isph",), ("model=wcsph_reduced", "time.method=multirate", "time.fixed_step_s=1e-6")):
+            option = [o for s in (*model, "surface.temperature=face", "time.end_s=8e-5",
+                                  "output.checkpoint_interval_s=2e-5") for o in ("--set", s)]
+            one = run(WELD, self.folder / f"{model[0]} one", "--threads", "1", *option)
+            two = run(WELD, self.folder / f"{model[0]} two", "--threads", "2", "--until", "4.1e-5", *option)
+            self.finish(two, "--threads", "2")
+            self.assert_same_results(one, two, model[0])
+
     def test_fast_sound(self):
         """Octets and the lists of a slow step that outlast it are made anew at a checkpoint in both runs."""
         option = [o for s in ("model=wcsph_reduced", "time.method=multirate", "time.fixed_step_s=1e-6",
