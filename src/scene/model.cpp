@@ -161,9 +161,8 @@ void Model::evaluate_patch(double t, bool rests) {
 }
 
 void Model::settle_faces() {
-  if (!losses_.at_face) return;
   find_faces();
-  if (weakly_compressible()) update_surface_pressure();
+  if (losses_.at_face && weakly_compressible()) update_surface_pressure();
 }
 
 void Model::find_faces() {
