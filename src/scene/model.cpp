@@ -190,7 +190,7 @@ void Model::update_surface() {
   if (weakly_compressible()) {
     const auto timer = timers_.measure(Part::pressure);
     acoustic_->gather(stage);
-    update_surface_pressure();
+    if (!losses_.at_face) update_surface_pressure();  // else once the faces are known
   }
   forget_coefficients();
 }

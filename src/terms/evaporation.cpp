@@ -22,11 +22,15 @@ double SurfaceLosses::mass_flux_slope(const Material& m, double temperature) con
          (m.saturation_pressure_slope(temperature) - 0.5 * m.saturation_pressure(temperature) / temperature);
 }
 
+double SurfaceLosses::radiated(const Material& m, double area, double t) const {
+  return area * m.emissivity * stefan_boltzmann * (t * t * t * t - std::pow(ambient_temperature, 4));
+}
+
 double SurfaceLosses::flux(const Stage& s, Index i, double t) const {
   const Material& m = s.constants->material;
   double q = 0;
   if (evaporation && s.patch->liquid[i]) q += mass_flux(m, t) * m.latent_heat_vaporisation;
-  if (radiation) q += m.emissivity * stefan_boltzmann * (t * t * t * t - std::pow(ambient_temperature, 4));
+  if (radiation) q += radiated(m, 1, t);
   return q;
 }
 
@@ -70,7 +74,8 @@ void SurfaceLosses::find_faces(Stage& s, const std::vector<double>& light) const
     const double g = conductance(s, i), inside = s.temperature[i],
                  absorbed = light.empty() ? 0.0 : light[i] / s.area[i];
     // From the lower of what conduction and vapour alone would give, which is near. The residual grows with
-    // T_s and is convex: from above Newton's method falls to the root without ever passing it.
+    // T_s and is convex: wherever it starts, Newton's method is above the root after one step and falls to
+    // it.
     double t = inside + absorbed / g;
     if (evaporation && absorbed > 0)
       t = std::min(t, std::max(inside, temperature_of_vapour(s.constants->material, absorbed)));
@@ -104,8 +109,7 @@ void SurfaceLosses::add_heating(const Stage& s, double* heating, Crossings& cros
             loss += rate * m.latent_heat_vaporisation;
           }
           if (radiation) {
-            const double q = s.area[i] * m.emissivity * stefan_boltzmann *
-                             (t * t * t * t - std::pow(ambient_temperature, 4));
+            const double q = radiated(m, s.area[i], t);
             sum.radiation += q;
             loss += q;
           }

@@ -33,6 +33,8 @@ struct SurfaceLosses {
   double rate(const Stage& stage) const;
 
  private:
+  /// Heat that an area radiates [W].
+  double radiated(const Material& m, double area, double temperature) const;
   /// Heat that the face of a particle loses [W/m^2], and its derivative with respect to T_s.
   double flux(const Stage& stage, Index i, double temperature) const;
   double flux_slope(const Stage& stage, Index i, double temperature) const;
