@@ -90,6 +90,14 @@ void melt_at_the_front(const Scene& s, std::vector<std::string>& found) {
         least));
 }
 
+void repelling_tension(const Scene& s, std::vector<std::string>& found) {
+  if (s.flow.solver == scene::FlowSolver::wcsph && s.terms.recoil &&
+      s.flow.tension == scene::Tension::artificial_stress)
+    found.push_back(
+        "flow.tension: \"artificial_stress\" in melt that vapour pushes; where only viscosity dampens, melt "
+        "under a spot of recoil got fifty times the energy of the flow (recoil_spot): \"full\"");
+}
+
 }  // namespace
 
 std::vector<std::string> beyond_known_limits(const Scene& s) {
@@ -104,6 +112,7 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
                     strength, kStageViscosity));
   full_boxes(s, found);
   melt_at_the_front(s, found);
+  repelling_tension(s, found);
   if (s.laser && scene::is_elastic(s) && s.flow.elastic_modulus_scale > kWeldModulus)
     found.push_back(fmt::format(
         "flow.elastic_modulus_scale: {:g} in a weld; with the whole modulus the solid of aluminium "

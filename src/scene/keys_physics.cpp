@@ -135,10 +135,13 @@ std::vector<Key> surface_keys() {
              "Share of the vapour that does not condense again, 1 - beta_r.")
           .only_if(term("evaporation", &Terms::evaporation)),
       number("surface.recoil_pressure_pa", "Pa", at_least(0), MELTRAY_AT(surface.recoil_pressure),
-             "Uniform recoil pressure instead of that of the vapour; 0: that of the vapour.")
+             "Recoil pressure instead of that of the vapour, uniform or of a spot; 0: that of the vapour.")
           .only_if(term("recoil", &Terms::recoil)),
       number("surface.recoil_ramp_s", "s", at_least(0), MELTRAY_AT(surface.recoil_ramp),
              "Time in which recoil_pressure_pa grows from zero.")
+          .only_if(prescribed),
+      number("surface.recoil_radius_m", "m", at_least(0), MELTRAY_AT(surface.recoil_radius),
+             "Radius of a spot about x = y = 0 where recoil_pressure_pa has fallen to 1/e^2; 0: uniform.")
           .only_if(prescribed),
       number("surface.activation_ramp_k", "K", at_least(0), MELTRAY_AT(surface.activation_ramp),
              "Range above the melting temperature over which surface tension sets in.")

@@ -45,11 +45,11 @@ std::vector<Key> solver_keys() {
           "whatever the disorder, or sums as in Eq. (3), which conserve momentum pair by pair.")
           .only_if(wcsph),
       word<Tension>("flow.tension",
-                    {{"artificial_stress", Tension::artificial_stress},
-                     {"full", Tension::full},
-                     {"none", Tension::none}},
+                    {{"full", Tension::full},
+                     {"none", Tension::none},
+                     {"artificial_stress", Tension::artificial_stress}},
                     MELTRAY_AT(flow.tension),
-                    "Negative pressure: with the repulsion of Monaghan 2000, as it is, or counted as zero.")
+                    "Negative pressure: as it is, counted as zero, or with the repulsion of Monaghan 2000.")
           .only_if(wcsph),
       word<DensityDiffusion>("flow.density_diffusion",
                              {{"antuono", DensityDiffusion::antuono},

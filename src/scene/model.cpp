@@ -55,7 +55,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
   tension_.ramp = scene.surface.activation_ramp;
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
   recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient,
-             scene.surface.recoil_pressure, scene.surface.recoil_ramp};
+             scene.surface.recoil_pressure, scene.surface.recoil_ramp, scene.surface.recoil_radius};
   buoyancy_ = {scene.weighs(), scene.terms.buoyancy, scene.domain.gravity};
   shifting_ = {flow.shifting, flow.shifting_speed};
   projection_options_ = {
@@ -121,8 +121,8 @@ void Model::release() {
   projection = {};
   free_memory(acceleration_, transport_, all_forces_, along_surface_, solve_b_, solve_x_, at_rest_,
               stress_rate_);
-  free_memory(heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, guess_, solve_h_b_,
-              solve_h_x_);
+  free_memory(heating_, density_rate_, surface_pressure_, recoil_pressure_, recoil_average_, loss_slope_,
+              source_, other_, guess_, solve_h_b_, solve_h_x_);
   if (acoustic_) acoustic_->release();
   terms::release_fields(stage);
 }
@@ -196,7 +196,7 @@ void Model::update_surface() {
 }
 
 void Model::forget_coefficients() {
-  implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = marangoni_valid_ = false;
+  implicit_viscous_valid_ = explicit_viscous_valid_ = conduction_valid_ = along_surface_valid_ = false;
 }
 
 void Model::evaluate(double t, const double* y) {
@@ -241,12 +241,18 @@ void Model::update_surface_pressure() {
     tension_.pressure(stage, surface_pressure_);
   else
     surface_pressure_.assign(stage.size(), 0.0);
-  if (terms.recoil)
+  if (terms.recoil) {
+    recoil_pressure_.resize(stage.size());
     parallel_for(stage.size(), [&](Index i) {
-      if (patch.liquid[i] && stage.surface[i] > 0)
-        surface_pressure_[i] += recoil_.pressure(constants_.material, stage.surface_temperature(i), stage.t);
+      recoil_pressure_[i] = 0;
+      if (!patch.liquid[i] || stage.surface[i] == 0) return;
+      const double r = constants_.dim == 2 ? patch.x[0][i] : std::hypot(patch.x[0][i], patch.x[1][i]);
+      recoil_pressure_[i] = recoil_.pressure(constants_.material, stage.surface_temperature(i), stage.t, r);
+      surface_pressure_[i] += recoil_pressure_[i];
     });
-  terms::average_surface_pressure(stage, surface_pressure_);
+    terms::average_over_surface(stage, recoil_pressure_, recoil_average_);
+  }
+  terms::average_over_surface(stage, surface_pressure_, stage.surface_pressure);
 }
 
 terms::Rates Model::cleared_rates() {
@@ -295,12 +301,15 @@ void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
       .add_acceleration(stage, view(static_cast<const Patch&>(patch).v), acceleration);
 }
 
-/// Where the surface stands still within a step, so does the force along it.
-void Model::add_frozen_marangoni(const MutField& acceleration) {
-  if (!marangoni_valid_) {
+/// Where the surface stands still within a step, so do the forces along it. (That of a projected pressure
+/// comes with the projection.)
+void Model::add_frozen_along_surface(const MutField& acceleration) {
+  if (!along_surface_valid_) {
     for (int c = 0; c < constants_.dim; ++c) clear(along_surface_[c], stage.size());
-    marangoni_.add_acceleration(stage, view(along_surface_));
-    marangoni_valid_ = true;
+    if (scene_.terms.marangoni) marangoni_.add_acceleration(stage, view(along_surface_));
+    if (weakly_compressible() && scene_.terms.recoil)
+      terms::add_recoil_along_surface(stage, recoil_average_, view(along_surface_));
+    along_surface_valid_ = true;
   }
   for (int c = 0; c < constants_.dim; ++c)
     parallel_for(static_cast<std::ptrdiff_t>(stage.moving.size()), [&](std::ptrdiff_t k) {
@@ -320,9 +329,9 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
     buoyancy_.add_acceleration(stage, rates.acceleration);
     crossings.gravity = force_gained();
   }
-  if (!scene_.terms.marangoni) return;
+  if (!scene_.terms.marangoni && !(weakly_compressible() && scene_.terms.recoil)) return;
   if (weakly_compressible() || projects_steps())
-    add_frozen_marangoni(rates.acceleration);
+    add_frozen_along_surface(rates.acceleration);
   else
     marangoni_.add_acceleration(stage, rates.acceleration);
   crossings.surface = force_gained();

@@ -137,6 +137,7 @@ class Model : public OdeProblem {
   bool solve_viscous(double gamma, const double* known, const Components& resting, double* v, Vec3& impulse);
   Vec3 total_force() const;
   Vec3 force_gained();
+  void add_projected_pressure(const MutField& acceleration);
   void note_largest_acceleration();
   void add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
   void pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings);
@@ -148,7 +149,7 @@ class Model : public OdeProblem {
   bool holds_rest(const double* y) const;
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
-  void add_frozen_marangoni(const MutField& acceleration);
+  void add_frozen_along_surface(const MutField& acceleration);
   double acoustic_step(double speed) const;
   std::size_t elastic_begin() const;
   std::size_t elastic_size() const;
@@ -180,13 +181,14 @@ class Model : public OdeProblem {
   Components acceleration_, transport_, all_forces_,
       along_surface_;  ///< scratch, one entry per patch particle
   SymmetricComponents stress_rate_;
-  std::vector<double> heating_, density_rate_, surface_pressure_, loss_slope_, source_, other_, start_x_;
+  std::vector<double> heating_, density_rate_, surface_pressure_, recoil_pressure_, recoil_average_,
+      loss_slope_, source_, other_, start_x_;
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;
   std::vector<double> guess_, solve_h_b_, solve_h_x_;
   const double* packed_ = nullptr;  ///< the state that the patch holds, if it is that of the last pack()
   bool implicit_viscous_valid_ = false, explicit_viscous_valid_ = false, conduction_valid_ = false,
-       marangoni_valid_ = false;
+       along_surface_valid_ = false;
 };
 
 }  // namespace meltray::scene

@@ -53,7 +53,7 @@ void Model::project(double dt) {
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
 
   for (int c = 0; c < constants_.dim; ++c) clear(acceleration_[c], stage.size());
-  projection.add_acceleration(stage, projection_options_.entry, view(acceleration_));
+  add_projected_pressure(view(acceleration_));
   const auto count = static_cast<std::ptrdiff_t>(stage.moving.size());
   pressure_impulse = dt * total_force();
   // Positions moved with the velocities of before: with x^{n+1} = x^n + dt v^n and v^{n+1} = v^n + dt
@@ -65,6 +65,14 @@ void Model::project(double dt) {
       patch.v[c][i] += dt * acceleration_[c][i];
     });
   note_largest_acceleration();
+}
+
+/// -grad p / rho and the surface force. (The renormalised gradient of the other entry is whole at the
+/// surface.)
+void Model::add_projected_pressure(const MutField& acceleration) {
+  projection.add_acceleration(stage, projection_options_.entry, acceleration);
+  if (scene_.terms.recoil && projection_options_.entry == terms::SurfaceEntry::csf)
+    terms::add_recoil_along_surface(stage, recoil_average_, acceleration);
 }
 
 /// Of the accelerations gathered so far, without loose drops.
@@ -98,7 +106,7 @@ void Model::pressure_in_stage(terms::Rates& rates, terms::Crossings& crossings) 
   const double relax = 1 / (divergence_time * drift_time);
   for (Index r = 0; r < projection.rows(); ++r) source_[r] -= relax * other_[r];
   count_solve(projection.solve(stage, source_, projection_options_), stage.t);
-  projection.add_acceleration(stage, projection_options_.entry, rates.acceleration);
+  add_projected_pressure(rates.acceleration);
   crossings.pressure = force_gained();
 }
 
@@ -140,8 +148,7 @@ std::string Model::blame(Index i, double dt) {
     projection.divergence(stage, view(static_cast<const Patch&>(patch).v), source_);
     for (double& s : source_) s /= dt;
     projection.solve(stage, source_, projection_options_);
-    pull("pressure and surface force",
-         [&](auto& a) { projection.add_acceleration(stage, projection_options_.entry, a); });
+    pull("pressure and surface force", [&](auto& a) { add_projected_pressure(a); });
   }
   return "accelerations in the last accepted state: " + largest_first(std::move(pulls), "m/s^2");
 }

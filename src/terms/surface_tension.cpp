@@ -101,7 +101,8 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
   });
 }
 
-void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
+void average_over_surface(const Stage& s, const std::vector<double>& pressure, std::vector<double>& average) {
+  average.resize(s.size());
   sph::with_dim(s.constants->dim, [&](auto d) {
     constexpr int D = d;
     with_kernel<D>(s.constants->kernel, [&](auto kernel) {
@@ -109,7 +110,7 @@ void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
       const double* const surface = s.surface.data();
       const double* const p = pressure.data();
       parallel_for(s.size(), [&](Index i) {
-        s.surface_pressure[i] = 0;
+        average[i] = 0;
         const bool inside = s.surface[i] == 0 && s.fill[i] >= 1;
         if (inside || s.loose[i] || s.pairs->count(i) == 0) return;
         const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::PairLanes<D>& q) {
@@ -118,7 +119,7 @@ void average_surface_pressure(Stage& s, const std::vector<double>& pressure) {
         });
         const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
         const double weight = sum[1] + self;
-        if (weight > 0) s.surface_pressure[i] = (sum[0] + self * p[i]) / weight;
+        if (weight > 0) average[i] = (sum[0] + self * p[i]) / weight;
       });
     });
   });

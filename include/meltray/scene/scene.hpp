@@ -86,7 +86,7 @@ struct Flow {
   double sound_speed = 0;          ///< numerical, of the equation of state [m/s]
   bool thermal_expansion = false;  ///< reference density follows the temperature
   PressureGradient pressure_gradient = PressureGradient::difference;
-  Tension tension = Tension::artificial_stress;
+  Tension tension = Tension::full;
   DensityDiffusion density_diffusion = DensityDiffusion::antuono;
   double diffusion_coefficient = 0.1;      ///< delta of the density diffusion
   double artificial_viscosity = 1;         ///< alpha of Monaghan's viscosity
@@ -118,8 +118,9 @@ struct Surface {
   RecoilOnset recoil_onset = RecoilOnset::smooth;
   double recoil_coefficient = 0.54;       ///< of the saturation pressure
   double evaporation_coefficient = 0.82;  ///< 1 - beta_r
-  double recoil_pressure = 0;        ///< > 0: prescribed uniform recoil [Pa] instead of p_sat (validation)
+  double recoil_pressure = 0;        ///< > 0: prescribed recoil [Pa] instead of p_sat (validation)
   double recoil_ramp = 0;            ///< linear start of the prescribed recoil [s]
+  double recoil_radius = 0;          ///< > 0: 1/e^2 radius of the prescribed recoil about x = y = 0 [m]
   double activation_ramp = 20;       ///< [K] above the melting point over which surface tension sets in
   double ambient_temperature = 300;  ///< [K] for radiation
 };

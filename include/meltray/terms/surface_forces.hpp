@@ -38,13 +38,24 @@ struct Recoil {
   RecoilOnset onset = RecoilOnset::smooth;
   double coefficient = 0.54;
   double prescribed = 0,
-         prescribed_ramp = 0;  ///< > 0: uniform pressure [Pa] reached after a linear start [s]
-  double pressure(const Material& m, double temperature, double t) const;
+         prescribed_ramp = 0;    ///< > 0: pressure [Pa] instead of that, reached after a linear start [s]
+  double prescribed_radius = 0;  ///< > 0: of a spot, exp(-2 r^2 / radius^2) [m]
+  /// [Pa] at temperature [K], time t [s] and distance r from the axis x = y = 0 [m].
+  double pressure(const Material& m, double temperature, double t, double r = 0) const;
 };
 
-/// Replaces stage.surface_pressure by the average of `pressure` over the surface neighbours of each moving
-/// particle (weights surface_j W_ij), so that one overheated particle does not pull its neighbours apart.
-void average_surface_pressure(Stage& stage, const std::vector<double>& pressure);
+/// The average of `pressure` over the surface neighbours of each particle (weights surface_j W_ij), so that
+/// one overheated particle does not pull its neighbours apart; one entry per patch particle.
+void average_over_surface(const Stage& stage, const std::vector<double>& pressure,
+                          std::vector<double>& average);
+
+/// What the outermost layer lacks of the slope of the recoil along the surface. On a flat face its sums have
+/// 0.78 (2-D) or 0.79 (3-D) of the second moment of a full kernel, and its melt would take that share of the
+/// acceleration. Adds -(1 - lattice.face_moment) exposure (I - n n) grad q / rho to melt at the surface, q
+/// being the averaged `recoil` and its gradient that by least squares in the plane of the surface. Not so for
+/// sigma kappa: at a line of contact that is a force spread over the kernel, whose slope would hold the line.
+void add_recoil_along_surface(const Stage& stage, const std::vector<double>& recoil,
+                              const MutField& acceleration);
 
 /// Marangoni stress as a body force: a = (d sigma/dT / rho) 2 (-n.grad c) (I - n n) grad T, grad T
 /// renormalised, n the mean normal of the surface around a particle. Pairs above a plane inside the liquid

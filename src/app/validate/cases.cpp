@@ -31,6 +31,8 @@ const std::vector<ValidationCase>& validation_cases() {
        marangoni_cavity},
       {1, "recoil_flat_plate", "pool at rest under a uniform recoil pressure: pressure, wall force, rest",
        recoil_flat_plate},
+      {1, "recoil_spot", "film and pool under a spot of recoil pressure: energy of the flow that it starts",
+       recoil_spot},
       {1, "constrained_expansion", "heated elastic block between walls: thermal stress, free expansion",
        constrained_expansion},
       {1, "elastic_plate", "clamped elastic plate that swings: period, amplitude, damping", elastic_plate},

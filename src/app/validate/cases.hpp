@@ -49,6 +49,7 @@ Rows natural_convection(const Setting& setting);
 Rows expansion_convection(const Setting& setting);
 Rows gallium_melting(const Setting& setting);
 Rows recoil_flat_plate(const Setting& setting);
+Rows recoil_spot(const Setting& setting);
 Rows hydrostatic(const Setting& setting);
 Rows elastic_plate(const Setting& setting);
 Rows constrained_expansion(const Setting& setting);

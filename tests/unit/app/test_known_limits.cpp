@@ -84,6 +84,18 @@ TEST_CASE("an interface viscosity that does not go with the temperature of the s
   CHECK(beyond_known_limits(s).empty());
 }
 
+TEST_CASE("the repulsion of stretched melt is named where vapour pushes weakly compressible melt") {
+  scene::Scene s;
+  s.flow.solver = scene::FlowSolver::wcsph;
+  s.flow.tension = scene::Tension::artificial_stress;
+  CHECK(beyond_known_limits(s).empty());
+  s.terms.recoil = true;
+  REQUIRE(beyond_known_limits(s).size() == 1);
+  CHECK(beyond_known_limits(s)[0].starts_with("flow.tension: \"artificial_stress\""));
+  s.flow.tension = scene::Scene().flow.tension;
+  CHECK(beyond_known_limits(s).empty());
+}
+
 TEST_CASE("a full box of walls that looks for a free surface is named") {
   scene::Scene s;
   s.terms.pressure = true;

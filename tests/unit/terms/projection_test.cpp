@@ -368,7 +368,7 @@ TEST_CASE("projection: surface tension gives a drop its Laplace pressure, 6 to 7
       terms::SurfaceTension tension;
       tension.ramp = 0;
       tension.pressure(s.stage, q);
-      terms::average_surface_pressure(s.stage, q);
+      terms::average_over_surface(s.stage, q, s.stage.surface_pressure);
       Projection p;
       p.assemble(s.stage);
       CHECK(p.solve(s.stage, std::vector<double>(p.rows(), 0.0), exact(entry)).converged);

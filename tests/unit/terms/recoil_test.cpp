@@ -2,11 +2,64 @@
 #include <catch2/catch.hpp>
 
 #include "meltray/core/constants.hpp"
+#include "meltray/terms/pressure/projection.hpp"
 #include "meltray/terms/surface_forces.hpp"
+#include "unit/terms/stage_setup.hpp"
 
 using namespace meltray;
+using meltray::test::StageSetup;
 using terms::Recoil;
 using terms::RecoilOnset;
+
+namespace {
+
+constexpr double kDx = 5e-5, kSlope = 1e8;  // of the pressure along the slab [Pa/m]
+constexpr int kLayers = 4;
+
+/// A slab of melt with an open face below and above, 16 spacings long; its layers lie across the last axis.
+void fill_slab(StageSetup& s, double jitter = 0) {
+  Vec3 max = Vec3::Constant(16 * kDx), above = max;
+  const int across = s.constants.dim - 1;
+  max[across] = kLayers * kDx;
+  above[across] = 12 * kDx;
+  Vec3 below = Vec3::Zero();
+  below[across] = -8 * kDx;
+  s.fill(Vec3::Zero(), max, 2000);
+  s.jitter(jitter);
+  s.prepare(below, above);
+}
+
+/// Acceleration along the slab over -slope / rho, the mean and the largest distance from it in each layer,
+/// away from the ends; and the largest across.
+struct Layers {
+  std::array<double, kLayers> mean{}, spread{};
+  double across = 0;
+};
+
+Layers along(const StageSetup& s, const Components& a) {
+  const int across = s.constants.dim - 1;
+  const double unit = -kSlope / s.constants.density;
+  std::array<std::vector<double>, kLayers> of_layer;
+  Layers layers;
+  for (Index i = 0; i < s.patch.size(); ++i) {
+    const Vec3 x = s.position(i) / kDx;
+    if (x[0] < 5 || x[0] > 11 || (s.constants.dim == 3 && (x[1] < 5 || x[1] > 11))) continue;
+    of_layer[static_cast<std::size_t>(std::clamp(x[across], 0.0, kLayers - 0.01))].push_back(a[0][i] / unit);
+    layers.across = std::max(layers.across, std::abs(a[across][i] / unit));
+  }
+  for (int k = 0; k < kLayers; ++k) {
+    for (const double value : of_layer[k]) layers.mean[k] += value / of_layer[k].size();
+    for (const double value : of_layer[k])
+      layers.spread[k] = std::max(layers.spread[k], std::abs(value - layers.mean[k]));
+  }
+  return layers;
+}
+
+void press(StageSetup& s, double slope) {
+  for (Index i = 0; i < s.patch.size(); ++i) s.stage.surface_pressure[i] = 5e4 + slope * s.position(i)[0];
+}
+
+}  // namespace
 
 TEST_CASE("recoil: values of iron and aluminium around the boiling point") {
   // 0.54 p_0 exp[(L_v M/R)(1/T_b - 1/T)] with L_v M/R = 40,904 K (iron), 34,074 K (aluminium).
@@ -49,4 +102,55 @@ TEST_CASE("recoil: a prescribed pressure replaces the vapour and starts on a ram
   CHECK(r.pressure(iron, 3500, 0) == 0);
   CHECK(r.pressure(iron, 3500, 2.5e-4) == Approx(5e3));
   CHECK(r.pressure(iron, 3500, 5e-3) == 2e4);
+}
+
+TEST_CASE("recoil: its slope moves the outermost layer of a slab as it moves those below") {
+  const int dim = GENERATE(2, 3);
+  StageSetup s(dim, kDx);
+  fill_slab(s);
+  press(s, kSlope);
+  terms::Projection projection;
+  projection.assemble(s.stage);
+  s.patch.pressure = s.stage.surface_pressure;
+  Components a = s.zeros();
+  projection.add_acceleration(s.stage, terms::SurfaceEntry::csf, view(a));
+  const Layers inside = along(s, a);
+  terms::add_recoil_along_surface(s.stage, s.stage.surface_pressure, view(a));
+  const Layers whole = along(s, a);
+  CAPTURE(dim, inside.mean[0], whole.mean[0], whole.mean[1]);
+  CHECK(inside.mean[0] == Approx(s.constants.lattice.face_moment));  // without: a quarter is missing
+  CHECK(inside.mean[0] < 0.8);
+  for (int k = 0; k < kLayers; ++k) CHECK(whole.mean[k] == Approx(1).margin(0.01));
+  CHECK(whole.across < 1e-6);
+}
+
+TEST_CASE("recoil: nothing is added inside, nor where it is uniform") {
+  const int dim = GENERATE(2, 3);
+  StageSetup s(dim, kDx);
+  fill_slab(s);
+  press(s, kSlope);
+  Components a = s.zeros();
+  terms::add_recoil_along_surface(s.stage, s.stage.surface_pressure, view(a));
+  const Layers sloped = along(s, a);
+  CHECK(sloped.mean[0] == Approx(1 - s.constants.lattice.face_moment).epsilon(0.01));
+  CHECK(std::abs(sloped.mean[1]) < 0.01);
+  press(s, 0);
+  Components b = s.zeros();
+  terms::add_recoil_along_surface(s.stage, s.stage.surface_pressure, view(b));
+  for (int c = 0; c < dim; ++c)
+    for (const double value : b[c]) CHECK(value == 0);
+}
+
+TEST_CASE("recoil: its slope is exact over disordered particles, but for how much of a face they are") {
+  const int dim = GENERATE(2, 3);
+  StageSetup s(dim, kDx);
+  fill_slab(s, 0.1);
+  press(s, kSlope);
+  Components a = s.zeros();
+  terms::add_recoil_along_surface(s.stage, s.stage.surface_pressure, view(a));
+  const Layers layers = along(s, a);
+  const double missing = 1 - s.constants.lattice.face_moment;
+  CAPTURE(dim, layers.mean[0] / missing, layers.spread[0] / missing);
+  CHECK(layers.mean[0] == Approx(missing).epsilon(0.1));
+  CHECK(layers.spread[0] < 0.3 * missing);
 }

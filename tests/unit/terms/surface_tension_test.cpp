@@ -35,7 +35,7 @@ Curvature curvature(StageSetup& s) {
   SurfaceTension tension;
   tension.ramp = 0;
   tension.pressure(s.stage, p);
-  terms::average_surface_pressure(s.stage, p);
+  terms::average_over_surface(s.stage, p, s.stage.surface_pressure);
   double sum = 0, square = 0, area = 0;
   for (Index i = 0; i < s.patch.size(); ++i) {
     const double k = s.stage.surface_pressure[i] / kSigma;
@@ -147,14 +147,14 @@ TEST_CASE(
   std::vector<double> p(s.patch.size(), 0.0);
   for (Index i = 0; i < s.patch.size(); ++i)
     if (s.stage.surface[i] > 0) p[i] = 5e4;
-  terms::average_surface_pressure(s.stage, p);
+  terms::average_over_surface(s.stage, p, s.stage.surface_pressure);
   for (Index i = 0; i < s.patch.size(); ++i)
     if (s.stage.surface[i] > 0) CHECK(s.stage.surface_pressure[i] == Approx(5e4));
   Index i = 0;
   while (s.stage.surface[i] < 1) ++i;
   std::fill(p.begin(), p.end(), 0.0);
   p[i] = 1;
-  terms::average_surface_pressure(s.stage, p);
+  terms::average_over_surface(s.stage, p, s.stage.surface_pressure);
   // Own share W(0) / sum W over the layer; by symmetry all shares of the peak in the layer add up to one.
   double sum = 0;
   for (Index j = 0; j < s.patch.size(); ++j)
@@ -172,7 +172,7 @@ TEST_CASE("surface tension: a surface layer pressed until its neighbours are com
   std::vector<double> p(s.patch.size(), 0.0);
   for (Index i = 0; i < s.patch.size(); ++i)
     if (s.stage.surface[i] > 0) p[i] = 5e4;
-  terms::average_surface_pressure(s.stage, p);
+  terms::average_over_surface(s.stage, p, s.stage.surface_pressure);
   int pressed = 0;
   for (Index i = 0; i < s.patch.size(); ++i) {
     if (s.stage.surface[i] == 0) continue;
