@@ -118,11 +118,11 @@ struct Surface {
   RecoilOnset recoil_onset = RecoilOnset::smooth;
   double recoil_coefficient = 0.54;       ///< of the saturation pressure
   double evaporation_coefficient = 0.82;  ///< 1 - beta_r
-  double recoil_pressure = 0;        ///< > 0: prescribed recoil [Pa] instead of p_sat (validation)
-  double recoil_ramp = 0;            ///< linear start of the prescribed recoil [s]
-  double recoil_radius = 0;          ///< > 0: 1/e^2 radius of the prescribed recoil about x = y = 0 [m]
-  double activation_ramp = 20;       ///< [K] above the melting point over which surface tension sets in
-  double ambient_temperature = 300;  ///< [K] for radiation
+  double recoil_pressure = 0;             ///< > 0: prescribed recoil [Pa] instead of p_sat (validation)
+  double recoil_ramp = 0;                 ///< linear start of the prescribed recoil [s]
+  double recoil_radius = 0;               ///< > 0: 1/e^2 radius of the prescribed recoil about x = y = 0 [m]
+  double activation_ramp = 20;            ///< [K] above the melting point over which surface tension sets in
+  double ambient_temperature = 300;       ///< [K] for radiation
 };
 
 /// [heat]: conduction away from the melt.
