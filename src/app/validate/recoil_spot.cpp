@@ -17,11 +17,12 @@ double kinetic_energy(const Particles& p) {
   return sum;
 }
 
-/// Of potential flow that a pressure q(x) = q_0 exp(-2 x^2 / R^2), its integral over time being `impulse` q /
-/// q_0, starts from rest in a pool of depth H between walls at x = -L and L: velocities are grad P / rho, P
-/// the harmonic function that is the integral of q on the surface and has no slope on floor and walls. With
-/// the cosines q_n of q / q_0, k_n = n pi / L: E = impulse^2 L / (2 rho) sum_n k_n tanh(k_n H) q_n^2 [J/m].
-double potential_energy_of_flow(const scene::Scene& scene, double impulse, double depth) {
+/// Kinetic energy of potential flow that a pressure q(x) = q_0 exp(-2 x^2 / R^2), its integral over time
+/// being `impulse` q / q_0, starts from rest in a pool of depth H between walls at x = -L and L: velocities
+/// are grad P / rho, P the harmonic function that is the integral of q on the surface and has no slope on
+/// floor and walls. With the cosines q_n of q / q_0, k_n = n pi / L: E = impulse^2 L / (2 rho) sum_n k_n
+/// tanh(k_n H) q_n^2 [J/m].
+double energy_of_potential_flow(const scene::Scene& scene, double impulse, double depth) {
   const double half = scene.domain.max[0], radius = scene.surface.recoil_radius;
   constexpr int kModes = 60, kPoints = 4000;
   double sum = 0;
@@ -51,7 +52,7 @@ Spot run(const Setting& setting, scene::Overrides overrides, double spacing, dou
   const double end = scene.time.end;
   advance(*simulation, end);
   const double impulse = scene.surface.recoil_pressure * (end - 0.5 * scene.surface.recoil_ramp);
-  return {kinetic_energy(simulation->particles()), potential_energy_of_flow(scene, impulse, depth),
+  return {kinetic_energy(simulation->particles()), energy_of_potential_flow(scene, impulse, depth),
           watch.seconds()};
 }
 
