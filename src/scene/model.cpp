@@ -232,6 +232,11 @@ void Model::evaluate(double t, const double* y) {
   }
 }
 
+/// The renormalised gradient of the other entry is whole at the surface.
+bool Model::adds_recoil_slope() const {
+  return scene_.terms.recoil && projection_options_.entry == terms::SurfaceEntry::csf;
+}
+
 /// sigma kappa + recoil at the surface, averaged over surface neighbours; only the pressure needs it.
 void Model::update_surface_pressure() {
   const Terms& terms = scene_.terms;
@@ -246,11 +251,12 @@ void Model::update_surface_pressure() {
     parallel_for(stage.size(), [&](Index i) {
       recoil_pressure_[i] = 0;
       if (!patch.liquid[i] || stage.surface[i] == 0) return;
-      const double r = constants_.dim == 2 ? patch.x[0][i] : std::hypot(patch.x[0][i], patch.x[1][i]);
-      recoil_pressure_[i] = recoil_.pressure(constants_.material, stage.surface_temperature(i), stage.t, r);
+      const double x = patch.x[0][i], y = constants_.dim == 3 ? patch.x[1][i] : 0;
+      recoil_pressure_[i] =
+          recoil_.pressure(constants_.material, stage.surface_temperature(i), stage.t, x * x + y * y);
       surface_pressure_[i] += recoil_pressure_[i];
     });
-    terms::average_over_surface(stage, recoil_pressure_, recoil_average_);
+    if (adds_recoil_slope()) terms::average_over_surface(stage, recoil_pressure_, recoil_average_);
   }
   terms::average_over_surface(stage, surface_pressure_, stage.surface_pressure);
 }
@@ -307,7 +313,7 @@ void Model::add_frozen_along_surface(const MutField& acceleration) {
   if (!along_surface_valid_) {
     for (int c = 0; c < constants_.dim; ++c) clear(along_surface_[c], stage.size());
     if (scene_.terms.marangoni) marangoni_.add_acceleration(stage, view(along_surface_));
-    if (weakly_compressible() && scene_.terms.recoil)
+    if (weakly_compressible() && adds_recoil_slope())
       terms::add_recoil_along_surface(stage, recoil_average_, view(along_surface_));
     along_surface_valid_ = true;
   }
@@ -329,7 +335,7 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
     buoyancy_.add_acceleration(stage, rates.acceleration);
     crossings.gravity = force_gained();
   }
-  if (!scene_.terms.marangoni && !(weakly_compressible() && scene_.terms.recoil)) return;
+  if (!scene_.terms.marangoni && !(weakly_compressible() && adds_recoil_slope())) return;
   if (weakly_compressible() || projects_steps())
     add_frozen_along_surface(rates.acceleration);
   else

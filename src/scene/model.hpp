@@ -129,6 +129,7 @@ class Model : public OdeProblem {
   void update_surface();
   void forget_coefficients();
   void update_surface_pressure();
+  bool adds_recoil_slope() const;
   void find_faces();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
   terms::ViscousOperator& viscous_operator(bool implicit_part);

@@ -67,12 +67,10 @@ void Model::project(double dt) {
   note_largest_acceleration();
 }
 
-/// -grad p / rho and the surface force. (The renormalised gradient of the other entry is whole at the
-/// surface.)
+/// -grad p / rho and the surface force.
 void Model::add_projected_pressure(const MutField& acceleration) {
   projection.add_acceleration(stage, projection_options_.entry, acceleration);
-  if (scene_.terms.recoil && projection_options_.entry == terms::SurfaceEntry::csf)
-    terms::add_recoil_along_surface(stage, recoil_average_, acceleration);
+  if (adds_recoil_slope()) terms::add_recoil_along_surface(stage, recoil_average_, acceleration);
 }
 
 /// Of the accelerations gathered so far, without loose drops.

@@ -8,11 +8,11 @@
 
 namespace meltray::terms {
 
-double Recoil::pressure(const Material& m, double temperature, double t, double r) const {
+double Recoil::pressure(const Material& m, double temperature, double t, double r2) const {
   if (prescribed > 0) {
     const double started = prescribed_ramp > 0 ? std::min(1.0, t / prescribed_ramp) : 1.0;
     const double share =
-        prescribed_radius > 0 ? std::exp(-2 * r * r / (prescribed_radius * prescribed_radius)) : 1.0;
+        prescribed_radius > 0 ? std::exp(-2 * r2 / (prescribed_radius * prescribed_radius)) : 1.0;
     return prescribed * started * share;
   }
   const double p = coefficient * m.saturation_pressure(temperature);

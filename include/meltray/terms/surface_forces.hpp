@@ -40,8 +40,8 @@ struct Recoil {
   double prescribed = 0,
          prescribed_ramp = 0;    ///< > 0: pressure [Pa] instead of that, reached after a linear start [s]
   double prescribed_radius = 0;  ///< > 0: of a spot, exp(-2 r^2 / radius^2) [m]
-  /// [Pa] at temperature [K], time t [s] and distance r from the axis x = y = 0 [m].
-  double pressure(const Material& m, double temperature, double t, double r = 0) const;
+  /// [Pa] at temperature [K], time t [s] and squared distance r2 from the axis x = y = 0 [m^2].
+  double pressure(const Material& m, double temperature, double t, double r2 = 0) const;
 };
 
 /// The average of `pressure` over the surface neighbours of each particle (weights surface_j W_ij), so that

@@ -74,9 +74,9 @@ void add_craters(const Setting& setting, const scene::Overrides& weak, Rows& row
     const Watch watch;
     scene::Overrides overrides = weak;
     overrides.push_back(fmt::format("flow.tension={}", tension));
+    const double energy = crater_energy(setting, overrides);
     rows.push_back(relative_row(fmt::format("wcsph, crater, tension {}: kinetic energy [J/m]", tension),
-                                crater_energy(setting, overrides), projected, 0.1,
-                                {resolution_text(5e-5), watch.seconds(), "ISPH"}));
+                                energy, projected, 0.1, {resolution_text(5e-5), watch.seconds(), "ISPH"}));
     rows.back().judged = tension != std::string("artificial_stress");
   }
 }
