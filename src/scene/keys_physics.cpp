@@ -67,6 +67,11 @@ std::vector<Key> flow_keys() {
              "the scene implies.")
           .only_if(pressure)
           .only_if(isph),
+      number("flow.least_distance", "", between(0, 0.9), MELTRAY_AT(flow.least_distance),
+             "Distance, in spacings, below which particles of melt at the free surface are moved apart; 0: "
+             "they may overlap.")
+          .only_if(pressure)
+          .only_if(isph),
       of_row(number("flow.shifting", "", between(0, 100), MELTRAY_AT(flow.shifting),
                     "Coefficient of the velocity that keeps particles evenly spread; 0: off."),
              "0", &Preset::shifting, MELTRAY_AT(flow.shifting))

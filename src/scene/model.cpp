@@ -28,8 +28,9 @@ terms::RecoilOnset onset(RecoilOnset o) {
   return terms::RecoilOnset::smooth;
 }
 
-/// Time constants of the projections' corrections, in times that the flow takes to cross a spacing.
-constexpr double kDriftCrossings = 7, kDivergenceCrossings = 0.2;
+/// Time constants of the projections' corrections and of the parting of what has come too close, in times
+/// that the flow takes to cross a spacing.
+constexpr double kDriftCrossings = 7, kDivergenceCrossings = 0.2, kPartingCrossings = 0.2;
 
 /// What the case file says, as far as the method leaves a choice; "auto" starts explicit.
 Partitions initial_partitions(const Time& time) {
@@ -63,6 +64,7 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
       flow.pressure_tolerance, flow.pressure_max_iterations};
   const double crossing = constants.spacing / expected_speed(scene);
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
+  least_distance_ = {flow.least_distance, kPartingCrossings * crossing};
   divergence_time = kDivergenceCrossings * crossing;
   partitions = initial_partitions(scene.time);
   if (scene.terms.pressure && flow.solver == FlowSolver::wcsph) acoustic_ = acoustic_pass(scene);

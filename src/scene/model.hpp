@@ -12,6 +12,7 @@
 #include "meltray/scene/simulation.hpp"
 #include "meltray/terms/conduction.hpp"
 #include "meltray/terms/evaporation.hpp"
+#include "meltray/terms/least_distance.hpp"
 #include "meltray/terms/pressure/acoustic_pass.hpp"
 #include "meltray/terms/pressure/projection.hpp"
 #include "meltray/terms/shifting.hpp"
@@ -67,6 +68,11 @@ class Model : public OdeProblem {
   /// Where density is a field of the state, makes the pressures those of the densities: the end of a step
   /// that is evaluated no more.
   void update_equation_of_state();
+  /// Whether melt at the surface is kept from overlapping.
+  bool keeps_apart() const;
+  /// Parts melt that has come too close over the step dt [s]: moves positions of the patch, by what at most
+  /// [m].
+  double keep_apart(double dt);
   /// One projection over the step dt [s] that led to the evaluated patch: corrects its velocities, Eq. (6).
   void project(double dt);
   /// Accelerations of one patch particle by term, largest first, at the evaluated state: "pressure 3e+06
@@ -175,6 +181,7 @@ class Model : public OdeProblem {
   terms::Marangoni marangoni_;
   terms::Buoyancy buoyancy_;
   terms::Shifting shifting_;
+  terms::LeastDistance least_distance_;
   terms::ProjectionOptions projection_options_;
   std::optional<terms::AcousticPass> acoustic_;  ///< of weakly compressible scenes
   std::optional<terms::ElasticSolid> elastic_;

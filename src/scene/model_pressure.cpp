@@ -67,6 +67,26 @@ void Model::project(double dt) {
   note_largest_acceleration();
 }
 
+bool Model::keeps_apart() const {
+  return flows() && !weakly_compressible() && constants_.free_surface && least_distance_.share > 0;
+}
+
+double Model::keep_apart(double dt) {
+  if (!keeps_apart()) return 0;
+  const auto timer = timers_.measure(Part::forces);
+  const MutField displacement = view(acceleration_);
+  least_distance_.displace(stage, dt, displacement);
+  return parallel_max(static_cast<std::ptrdiff_t>(stage.moving.size()), 0.0, [&](std::ptrdiff_t k) {
+    const Index i = stage.moving[k];
+    double moved2 = 0;
+    for (int c = 0; c < constants_.dim; ++c) {
+      patch.x[c][i] += displacement[c][i];
+      moved2 += displacement[c][i] * displacement[c][i];
+    }
+    return std::sqrt(moved2);
+  });
+}
+
 /// -grad p / rho and the surface force.
 void Model::add_projected_pressure(const MutField& acceleration) {
   projection.add_acceleration(stage, projection_options_.entry, acceleration);

@@ -147,6 +147,7 @@ StepInfo Simulation::Impl::step(double t_stop) {
   }
   model.unpack(y.data());
   model.update_equation_of_state();
+  const double parted = model.keep_apart(report.dt);
   check(report);
   prepared = false;
   time = report.t;
@@ -159,7 +160,7 @@ StepInfo Simulation::Impl::step(double t_stop) {
   if (model.flows()) remove_escaped();
   change_phases();
   if (scene.heat.bulk_interval > 0 && scene.terms.conduction) exchange_bulk(time);
-  note_motion(report.dt);
+  note_motion(report.dt, parted);
   prepare();
   if (model.projects_steps()) {
     model.project(report.dt);
@@ -173,13 +174,14 @@ StepInfo Simulation::Impl::step(double t_stop) {
   return {time, report.dt, std::string(report.limiter)};
 }
 
-/// How far particles may have moved since the lists were built and the light was traced.
-void Simulation::Impl::note_motion(double dt) {
+/// How far particles may have moved since the lists were built and the light was traced; `parted` [m] besides
+/// what their velocities did.
+void Simulation::Impl::note_motion(double dt, double parted) {
   if (!model.flows() || (model.stage.moving.empty() && model.stage.elastic.empty())) return;
   const double fastest =
       std::max(model.largest_speed(model.stage.moving, true), model.largest_speed(model.stage.elastic, true));
-  list_motion += dt * fastest;
-  if (laser) laser->add_motion(dt * fastest);
+  list_motion += dt * fastest + parted;
+  if (laser) laser->add_motion(dt * fastest + parted);
 }
 
 /// Stops at the first particle of the patch that is not finite or runs away, before anything reaches the

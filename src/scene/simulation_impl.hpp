@@ -48,7 +48,7 @@ struct Simulation::Impl {
   void prepare();
   void choose_partitions(double longest);
   StepInfo step(double t_stop);
-  void note_motion(double dt);
+  void note_motion(double dt, double parted);
   void update_temperatures();
   void mark_surface(const std::vector<double>& weight);
   void find_surface();

@@ -272,6 +272,7 @@ std::vector<TermInfo> Simulation::terms() const {
           info("gravity", s.terms.gravity, s.weighs() ? "explicit" : "held by the walls"),
           info("buoyancy", s.terms.buoyancy, "explicit"),
           info("shifting", s.flow.shifting > 0, "explicit"),
+          info("least_distance", impl_->model.keeps_apart(), "between steps"),
           info("laser", s.laser.has_value(), "explicit, frozen over a step"),
           info("melting", s.terms.melting, "between steps")};
 }

@@ -97,11 +97,12 @@ struct Flow {
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
   int pressure_max_iterations = 500;
-  bool free_surface = true;    ///< false: the fluid fills a closed or periodic box
-  double drift_time = 0;       ///< in which errors of density are taken back [s]; 0: from the scene's speeds
-  double shifting = 0;         ///< coefficient C of the shifting velocity; 0 = off
-  double shifting_speed = 0;   ///< least speed that shifting reckons with [m/s]
-  double reference_speed = 0;  ///< [m/s] of interface viscosity (sound speed of the WCSPH twin)
+  bool free_surface = true;     ///< false: the fluid fills a closed or periodic box
+  double drift_time = 0;        ///< in which errors of density are taken back [s]; 0: from the scene's speeds
+  double least_distance = 0.8;  ///< in spacings, below which melt at the surface is parted; 0 = off
+  double shifting = 0;          ///< coefficient C of the shifting velocity; 0 = off
+  double shifting_speed = 0;    ///< least speed that shifting reckons with [m/s]
+  double reference_speed = 0;   ///< [m/s] of interface viscosity (sound speed of the WCSPH twin)
   double interface_viscosity_free = 1;   ///< alpha_LG at the free surface
   double interface_viscosity_solid = 1;  ///< alpha_SL at the solid-liquid interface
   double interface_viscosity_ramp = 50;  ///< [K] above the melting point over which alpha_SL acts
