@@ -181,7 +181,8 @@ void Simulation::Impl::note_motion(double dt, double parted) {
   const double fastest =
       std::max(model.largest_speed(model.stage.moving, true), model.largest_speed(model.stage.elastic, true));
   list_motion += dt * fastest + parted;
-  if (laser) laser->add_motion(dt * fastest + parted);
+  // Parting mostly moves particles along the surface, which stays where it is.
+  if (laser) laser->add_motion(dt * fastest);
 }
 
 /// Stops at the first particle of the patch that is not finite or runs away, before anything reaches the
