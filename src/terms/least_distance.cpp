@@ -8,7 +8,8 @@ namespace meltray::terms {
 
 void LeastDistance::displace(const Stage& s, double dt, const MutField& displacement) const {
   const double least = share * s.constants->spacing;
-  // The geometry in the list is older by a step, in which no pair comes nearer by more than this.
+  // The geometry in the list is older by a step. A pair that has come nearer by more than this within it is
+  // parted in the next.
   const double listed = least + 0.4 * s.constants->spacing;
   const double rate = std::min(dt / parting, 0.5);
   const Patch& patch = *s.patch;
