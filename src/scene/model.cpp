@@ -139,7 +139,9 @@ std::size_t Model::term_bytes() const {
       (projected ? sizeof(float) + sizeof(Index) : 0);
   // Fields: rates, and of each linear system its diagonal, the solver's vectors, right-hand side and
   // solution.
-  const std::size_t of_particle = (flows() ? dim : 0) + (weakly_compressible() ? 1 : 0) +
+  const std::size_t of_surface = (t.surface_tension || t.recoil ? 1 : 0) + (t.recoil ? 1 : 0) +
+                                 (adds_recoil_slope() ? 1 : 0) + (keeps_along_surface() ? dim : 0);
+  const std::size_t of_particle = (flows() ? dim : 0) + of_surface + (weakly_compressible() ? 1 : 0) +
                                   (shifting_.coefficient > 0 ? dim : 0) + (viscous ? 5 * dim + 5 : 0) +
                                   (stage.heated.empty() ? 0 : 1) + (t.conduction ? 11 : 0) +
                                   (projected ? 12 : 0);
@@ -311,6 +313,11 @@ void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
 
 /// Where the surface stands still within a step, so do the forces along it. (That of a projected pressure
 /// comes with the projection.)
+bool Model::keeps_along_surface() const {
+  return (weakly_compressible() && (scene_.terms.marangoni || adds_recoil_slope())) ||
+         (projects_steps() && scene_.terms.marangoni);
+}
+
 void Model::add_frozen_along_surface(const MutField& acceleration) {
   if (!along_surface_valid_) {
     for (int c = 0; c < constants_.dim; ++c) clear(along_surface_[c], stage.size());
@@ -337,11 +344,12 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
     buoyancy_.add_acceleration(stage, rates.acceleration);
     crossings.gravity = force_gained();
   }
-  if (!scene_.terms.marangoni && !(weakly_compressible() && adds_recoil_slope())) return;
-  if (weakly_compressible() || projects_steps())
+  if (keeps_along_surface())
     add_frozen_along_surface(rates.acceleration);
-  else
+  else if (scene_.terms.marangoni)
     marangoni_.add_acceleration(stage, rates.acceleration);
+  else
+    return;
   crossings.surface = force_gained();
 }
 

@@ -156,6 +156,7 @@ class Model : public OdeProblem {
   bool holds_rest(const double* y) const;
   std::size_t enthalpy_begin() const;
   void add_pressure_rates(terms::Rates& rates, terms::Crossings& crossings);
+  bool keeps_along_surface() const;
   void add_frozen_along_surface(const MutField& acceleration);
   double acoustic_step(double speed) const;
   std::size_t elastic_begin() const;
