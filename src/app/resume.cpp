@@ -104,11 +104,16 @@ int resume(const ResumeArguments& arguments) {
   const std::string outcome = observe::recorded_outcome(folder.path());
   const double done = observe::recorded_time(folder.path());
   const bool ended = outcome == "finished" || outcome == "stopped";
-  if (checkpoint && (ended || arguments.until) && end <= done * (1 + 1e-9)) {
+  if ((ended || (checkpoint && arguments.until)) && end <= done * (1 + 1e-9)) {
     tell(arguments.quiet, fmt::format("{}: {} at t = {:.9g} s; nothing to do (--until goes further)",
                                       folder.path().string(), outcome, done));
     return kExitOk;
   }
+  if (!checkpoint && ended)
+    throw UsageError(
+        fmt::format("{}: {} at t = {:.9g} s, but its checkpoints are gone; `meltray run --overwrite` "
+                    "starts it anew and replaces what it has",
+                    folder.path().string(), outcome, done));
   if (end > scene.time.end) {
     scene.time.end = end;
     write_case_file(folder, scene);

@@ -183,6 +183,17 @@ class Restart(Scratch):
         self.assertIn("nothing to do", done.stdout)
         self.assertEqual((self.reference / "summary.json").read_bytes(), before)
 
+    def test_checkpoints_deleted(self):
+        """A run that has been done and cannot go on is refused, not begun anew over what it has."""
+        folder = run(WELD, self.folder / "done", "--until", "1.27e-4")
+        for path in folder.glob("checkpoint-*.h5"):
+            path.unlink()
+        before = (folder / "history.csv").read_bytes()
+        done = meltray("resume", folder, "--quiet", "--until", "1e-2")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("its checkpoints are gone", done.stderr)
+        self.assertEqual((folder / "history.csv").read_bytes(), before)
+
     def test_fork(self):
         """A fork goes on in a folder of its own with another setting and leaves the first run alone."""
         before = {f: f.read_bytes() for f in self.reference.rglob("*") if f.is_file()}
