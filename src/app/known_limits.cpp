@@ -29,6 +29,8 @@ constexpr double kWeldModulus = 0.01;
 // Strength of the interface viscosity below which vapour at the temperature of the particles throws melt out,
 // and above which vapour at that of the faces cannot push it away.
 constexpr double kFrontViscosity = 0.3;
+// Part of a spacing by which the particles of a body may end before or beyond its face.
+constexpr double kFaceOffset = 0.1;
 
 void step_factors(const Scene& s, std::vector<std::string>& found) {
   if (s.time.integrator.fixed_step > 0) return;
@@ -98,6 +100,28 @@ void repelling_tension(const Scene& s, std::vector<std::string>& found) {
         "under a spot of recoil got fifty times the energy of the flow (recoil_spot): \"full\"");
 }
 
+/// Boxes whose faces lie between two layers of the lattice: their particles end elsewhere.
+void faces_between_layers(const Domain& domain, std::vector<std::string>& found) {
+  if (domain.arrangement == scene::Arrangement::rotated) return;
+  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+  for (std::size_t k = 0; k < domain.bodies.size(); ++k) {
+    const Body& body = domain.bodies[k];
+    if (body.shape != ShapeKind::box) continue;
+    for (int c = 0; c < domain.dimension; ++c) {
+      const double length = domain.max[c] - domain.min[c],
+                   layer = length / std::round(length / domain.spacing);
+      for (const auto& [name, face] : {std::pair{"min_m", body.min[c]}, {"max_m", body.max[c]}}) {
+        if (face <= domain.min[c] || face >= domain.max[c]) continue;
+        const double end = domain.min[c] + layer * std::round((face - domain.min[c]) / layer);
+        if (std::abs(end - face) > kFaceOffset * domain.spacing)
+          found.push_back(fmt::format(
+              "bodies[{}].{}: {} = {:g} m lies between two layers of particles; they end at {:g} m", k, name,
+              c == domain.dimension - 1 ? "z" : kAxes[c], face, end));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> beyond_known_limits(const Scene& s) {
@@ -123,6 +147,7 @@ std::vector<std::string> beyond_known_limits(const Scene& s) {
 
 std::vector<std::string> doubtful_settings(const Scene& s) {
   std::vector<std::string> found;
+  faces_between_layers(s.domain, found);
   if (!s.laser || s.domain.bodies.empty()) return found;
   double top = -1e300, end = -1e300;
   for (const Body& body : s.domain.bodies) {
