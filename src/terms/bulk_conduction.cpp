@@ -28,12 +28,14 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
   for (Index i = 0; i < n; ++i) wanted[i] = !patch_.wall[i];
   sph::PairList pairs;  // not kept: most of the warm particles of a weld are rows here
   pairs.build(patch_, selector.grid(), 0.0, wanted);
-  assemble(constants, pairs, rests);
+  assemble(constants, pairs, !particles.stress[0].empty(), rests);
 }
 
-/// Conductances of the pairs of which one at least is awake; the others are left out of the rows.
+/// Conductances of the pairs of which one at least is awake; the others are left out of the rows. `elastic`: a
+/// scene whose solid has stresses.
 template <class Rests>
-void BulkConduction::assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests) {
+void BulkConduction::assemble(const SceneConstants& constants, const sph::PairList& pairs, bool elastic,
+                               Rests&& rests) {
   const Index n = patch_.size();
   const auto& material = constants.material;
   lambda_.resize(n);
@@ -61,7 +63,10 @@ void BulkConduction::assemble(const SceneConstants& constants, const sph::PairLi
     constexpr int D = d;
     with_kernel<D>(constants.kernel, [&](auto kernel) {
       using Kernel = decltype(kernel);
-      const auto volume = [&](Index i) { return patch_.mass[i] / constants.density; };
+      // As in the state: elastic solid has a density of its own.
+      const auto volume = [&](Index i) {
+        return patch_.mass[i] / (elastic ? patch_.density[i] : constants.density);
+      };
       const auto distance = [&](Index i, Index j) {
         double r2 = 0;
         for (int c = 0; c < D; ++c) r2 += std::pow(pairs.nearest(c, patch_.x[c][i] - patch_.x[c][j]), 2);

@@ -12,7 +12,7 @@ template <int D>
 Eigen::Matrix<double, D, 1> mean_normal(const Stage& s, Index i) {
   using Vector = Eigen::Matrix<double, D, 1>;
   const auto sum = s.pairs->sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
-    const sph::Lanes weight = p.of(s.surface.data()) * p.w;
+    const sph::Lanes weight = p.of(s.surface.data()) * p.of(s.patch->liquid.data()) * p.w;
     std::array<sph::Lanes, D> out;
     for (int c = 0; c < D; ++c) out[c] = weight * p.of(s.normal[c].data());
     return out;

@@ -36,7 +36,8 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
 
 /// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the
 /// lattice, and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles'
-/// radius. Where a wall prescribes the normal it is held: averaged with those above the wall only, it would
+/// radius. Only melt takes part, here and below: the face of dry solid beside a line of contact is no part of
+/// the surface that pulls, and would read as a sharp corner of it. Where a wall prescribes the normal it is held: averaged with those above the wall only, it would
 /// lose half of its turn, and with it half of the force that moves the line of contact.
 void SurfaceTension::smooth_normals(const Stage& s) const {
   constexpr int kPasses = 2;
@@ -45,15 +46,16 @@ void SurfaceTension::smooth_normals(const Stage& s) const {
     with_kernel<D>(s.constants->kernel, [&](auto kernel) {
       using Kernel = decltype(kernel);
       const double* const surface = s.surface.data();
+      const std::uint8_t* const melt = s.patch->liquid.data();
       const bool held = !s.wall_normal[0].empty();
       smooth_ = s.normal;
       for (int pass = 0; pass < kPasses; ++pass) {
         previous_ = smooth_;
         const ConstField n = view(static_cast<const Components&>(previous_));
         parallel_for(s.size(), [&](Index i) {
-          if (surface[i] == 0 || s.loose[i]) return;
+          if (surface[i] == 0 || s.loose[i] || !melt[i]) return;
           auto sum = s.pairs->template sum_row<D, D>(i, [&](const sph::PairLanes<D>& p) {
-            const sph::Lanes weight = p.of(surface) * p.w;
+            const sph::Lanes weight = p.of(surface) * p.of(melt) * p.w;
             std::array<sph::Lanes, D> out;
             for (int c = 0; c < D; ++c) out[c] = weight * p.of(n[c]);
             return out;
@@ -76,6 +78,7 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
     constexpr int D = d;
     const ConstField n = view(static_cast<const Components&>(smooth_));
     const double* const surface = s.surface.data();
+    const std::uint8_t* const melt = s.patch->liquid.data();
     // Of sum_j W t^2, t the distance in the tangent plane: none where a particle has no neighbour beside it.
     const double tiny = 1e-12 * std::pow(s.constants->spacing, 2 - D);
     parallel_for(s.size(), [&](Index i) {
@@ -92,7 +95,7 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
           bend += (p.of(n[c]) - ni[c]) * t;
           t2 += t * t;
         }
-        const sph::Lanes weight = p.of(surface) * p.w;
+        const sph::Lanes weight = p.of(surface) * p.of(melt) * p.w;
         return std::array<sph::Lanes, 2>{weight * bend, weight * t2};
       });
       const double kappa = sum[1] > tiny ? (D - 1) * sum[0] / sum[1] : 0.0;
@@ -109,15 +112,16 @@ void average_over_surface(const Stage& s, const std::vector<double>& pressure, s
       using Kernel = decltype(kernel);
       const double* const surface = s.surface.data();
       const double* const p = pressure.data();
+      const std::uint8_t* const melt = s.patch->liquid.data();
       parallel_for(s.size(), [&](Index i) {
         average[i] = 0;
         const bool inside = s.surface[i] == 0 && s.fill[i] >= 1;
         if (inside || s.loose[i] || s.pairs->count(i) == 0) return;
         const auto sum = s.pairs->sum_row<D, 2>(i, [&](const sph::PairLanes<D>& q) {
-          const sph::Lanes weight = q.of(surface) * q.w;
+          const sph::Lanes weight = q.of(surface) * q.of(melt) * q.w;
           return std::array<sph::Lanes, 2>{weight * q.of(p), weight};
         });
-        const double self = surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]);
+        const double self = melt[i] ? surface[i] * Kernel::w(0.0, 1 / s.patch->smoothing[i]) : 0.0;
         const double weight = sum[1] + self;
         if (weight > 0) average[i] = (sum[0] + self * p[i]) / weight;
       });

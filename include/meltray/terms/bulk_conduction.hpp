@@ -24,7 +24,7 @@ class BulkConduction {
 
  private:
   template <class Rests>
-  void assemble(const SceneConstants& constants, const sph::PairList& pairs, Rests&& rests);
+  void assemble(const SceneConstants& constants, const sph::PairList& pairs, bool elastic, Rests&& rests);
 
   Patch patch_;
   /// Row i holds the entries from start_[i] to start_[i + 1].

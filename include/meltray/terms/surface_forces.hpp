@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "meltray/core/constants.hpp"
 #include "meltray/terms/term.hpp"
 
 namespace meltray::terms {
@@ -44,8 +45,9 @@ struct Recoil {
   double pressure(const Material& m, double temperature, double t, double r2 = 0) const;
 };
 
-/// The average of `pressure` over the surface neighbours of each particle (weights surface_j W_ij), so that
-/// one overheated particle does not pull its neighbours apart; one entry per patch particle.
+/// The average of `pressure` over the melt at the surface near each particle (weights surface_j W_ij), so that
+/// one overheated particle does not pull its neighbours apart; one entry per patch particle. Dry solid has no
+/// part in it: what it took of recoil and tension beside a line of contact nothing would give back.
 void average_over_surface(const Stage& stage, const std::vector<double>& pressure,
                           std::vector<double>& average);
 
@@ -69,7 +71,7 @@ struct Marangoni {
 /// gravity.
 struct Buoyancy {
   bool gravity = true, buoyant = false;
-  double g = 9.80665;  ///< [m/s^2], acts along -z
+  double g = constants::standard_gravity;  ///< [m/s^2], acts along -z
   void add_acceleration(const Stage& stage, const MutField& acceleration) const;
 };
 

@@ -111,6 +111,27 @@ TEST_CASE("bulk conduction: with a part in the state vector every pair counts on
   CHECK(largest_difference(full, split) < 0.01 * largest_rise(full));
 }
 
+TEST_CASE("bulk conduction: conductances of elastic solid go by the density that it has") {
+  // Denser and heavier particles on the same sites: the same volumes, so that the same energy flows.
+  HotBlock plain, dense;
+  const double ratio = 1.056;
+  dense.particles.density.assign(dense.particles.size(), ratio * dense.constants.density);
+  for (double& m : dense.particles.mass) m *= ratio;
+  for (auto& s : dense.particles.stress) s.assign(dense.particles.size(), 0.0);
+  for (HotBlock* b : {&plain, &dense}) {
+    const std::vector<std::uint8_t> in_state(b->particles.size(), 0);
+    terms::BulkConduction op;
+    op.build(b->constants, b->selector, b->particles, kRest);
+    op.exchange(b->constants, 0.01 * kInterval, in_state, b->particles);
+  }
+  const HotBlock start;
+  for (std::size_t i = 0; i < start.particles.size(); ++i) {
+    const double flowed = plain.particles.mass[i] * (plain.particles.h[i] - start.particles.h[i]);
+    CHECK(dense.particles.mass[i] * (dense.particles.h[i] - start.particles.h[i]) ==
+          Approx(flowed).epsilon(1e-3).margin(1e-15));
+  }
+}
+
 TEST_CASE("bulk conduction: what is at rest is not looked at, and melted particles are left alone") {
   HotBlock b;
   terms::BulkConduction op;

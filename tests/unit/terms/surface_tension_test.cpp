@@ -181,3 +181,20 @@ TEST_CASE("surface tension: a surface layer pressed until its neighbours are com
   }
   CHECK(pressed > 0);
 }
+
+TEST_CASE("surface tension: dry solid beside the melt takes nothing off its surface pressure") {
+  StageSetup s(2, kDx);
+  s.for_lattice(Vec3::Zero(), Vec3(20 * kDx, 8 * kDx, 0),
+                [&](const Vec3& x) { s.add(x, x[0] < 10 * kDx ? 2000 : 300, x[0] < 10 * kDx); });
+  s.prepare(Vec3::Constant(-3 * kDx), Vec3(23 * kDx, 11 * kDx, 0));
+  std::vector<double> recoil(s.patch.size()), average;
+  for (Index i = 0; i < s.patch.size(); ++i) recoil[i] = s.patch.liquid[i] && s.stage.surface[i] > 0 ? 5e4 : 0.0;
+  terms::average_over_surface(s.stage, recoil, average);
+  int beside = 0;
+  for (Index i = 0; i < s.patch.size(); ++i) {
+    if (!s.patch.liquid[i] || s.stage.surface[i] == 0) continue;
+    CHECK(average[i] == Approx(5e4));
+    beside += s.patch.x[0][i] > 9 * kDx;
+  }
+  CHECK(beside > 0);
+}
