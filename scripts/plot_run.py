@@ -23,7 +23,7 @@ from matplotlib.ticker import LogLocator
 sys.dont_write_bytecode = True  # no folder of compiled code beside the scripts
 from sections import draw_sections  # noqa: E402
 
-ENERGIES = ("stored", "laser", "boundary", "evaporation", "radiation", "ejected", "clamped", "undeposited")
+ENERGIES = ("stored", "laser", "boundary", "evaporation", "radiation", "ejected", "cropped", "undeposited")
 plt.rcParams.update({"figure.dpi": 130, "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
 
 

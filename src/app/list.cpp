@@ -64,6 +64,7 @@ Lines terms() {
       {"flow.density_diffusion", "Eq. (2) of WCSPH, diffusion of density noise; density; explicit"},
       {"flow.thermal_expansion", "Eq. (7) of WCSPH, reference density over temperature; density; explicit"},
       {"flow.solid", "Eq. (9), \"elastic\": thermoelastic solid; stress, density, velocity; explicit"},
+      {"flow.least_distance", "beside Eq. (6): melt at the surface that must not overlap; position; between steps"},
       {"flow.shifting", "keeps particles evenly spread; position, velocity; explicit"},
       {"surface_tension", "sect. 2.1, continuum surface force or surface pressure; velocity; explicit"},
       {"marangoni", "sect. 2.1, force along the surface where tension changes with T; velocity; explicit"},

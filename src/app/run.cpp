@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -27,17 +28,20 @@ int run(const RunArguments& arguments) {
   where.out = arguments.out;
   where.overwrite = arguments.overwrite;
   where.case_name = arguments.case_file.stem().string();
+  std::unique_ptr<scene::Simulation> simulation;
+  // What is there is given up only for a run that can start.
+  const bool replaces = arguments.overwrite && arguments.out && std::filesystem::exists(*arguments.out);
+  if (replaces) simulation = std::make_unique<scene::Simulation>(scene);
   auto folder = observe::RunFolder::create(where);
   write_case_file(folder, scene);
   catch_signals();
 
   RunState state;
   state.case_fingerprint = fingerprint(scene);
-  std::unique_ptr<scene::Simulation> simulation;
   observe::CheckpointSlots slots(folder.path(), folder.run_id());
   std::optional<RunLoop> loop;
   try {
-    simulation = std::make_unique<scene::Simulation>(scene);
+    if (!simulation) simulation = std::make_unique<scene::Simulation>(scene);
     loop.emplace(*simulation, folder, slots, state, RunLoop::Options{where.case_name, end, arguments.quiet});
   } catch (const std::exception& e) {
     record_failed_start(folder, where.case_name, e);

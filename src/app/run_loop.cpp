@@ -8,13 +8,16 @@
 #include <csignal>
 #include <numeric>
 
+#include "app/known_limits.hpp"
 #include "app/schedule.hpp"
 #include "app/signals.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/shell.hpp"
 #include "meltray/core/parallel.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/pool.hpp"
 #include "meltray/observe/version.hpp"
+#include "meltray/scene/body_bounds.hpp"
 #include "meltray/scene/case_file.hpp"
 
 namespace meltray::app {
@@ -111,6 +114,34 @@ void RunLoop::say(const std::string& text) {
   std::fflush(stdout);
 }
 
+void RunLoop::warn(const std::string& text) {
+  warnings_.push_back(text);
+  log_.warn(text);
+  progress_.finish();
+  fmt::print(stderr, "meltray: warning: {}\n", text);
+}
+
+/// Says once that capillary or pool have come to where the workpiece was cropped: depths and widths then are
+/// those of the block.
+void RunLoop::warn_of_ends(const observe::HistoryRow& row) {
+  const scene::Domain& domain = simulation_.scene().domain;
+  if (warned_of_ends_ || !simulation_.scene().laser) return;
+  double bottom = domain.max[2], width = 0;
+  for (const scene::Body& body : domain.bodies) {
+    const scene::Bounds ends = scene::bounds_of(body);
+    bottom = std::min(bottom, std::max(ends.min[2], domain.min[2]));
+    width = std::max(width, std::min(ends.max[1], domain.max[1]) - std::max(ends.min[1], domain.min[1]));
+  }
+  const double near = 1.5 * domain.spacing;
+  const bool deep = std::max(row.capillary_depth, row.pool_depth) > -bottom - near,
+             wide = domain.dimension == 3 && row.pool_width > width - near;
+  if (!deep && !wide) return;
+  warned_of_ends_ = true;
+  warn(fmt::format("{} at the {} of the bodies at t = {:.6g} ms: its size is theirs from now on; larger bodies",
+                   row.capillary_depth > -bottom - near ? "the capillary is" : "the melt is",
+                   deep ? "bottom" : "sides", 1e3 * row.time));
+}
+
 int RunLoop::run() {
   try {
     start();
@@ -128,7 +159,7 @@ int RunLoop::run() {
     throw NumericalFailure(fmt::format(
         "{}\nstate saved in {} (t = {:.9g} s); go on from it with other settings:\n  meltray resume {} --set "
         "KEY=VALUE --out DIR",
-        e.what(), folder_.path().string(), checkpoint_time_, folder_.path().string()));
+        e.what(), folder_.path().string(), checkpoint_time_, shell_word(folder_.path().string())));
   } catch (const IoError& e) {
     record_io_error(e.what());
     throw;
@@ -150,6 +181,9 @@ void RunLoop::start() {
   for (const auto& term : simulation_.terms())
     log_.info(fmt::format("term {}: {}{}", term.name, term.active ? "" : "off, ", term.partition));
   say(fmt::format("run folder {}", folder_.path().string()));
+  for (const auto& text : doubtful_settings(simulation_.scene())) warn("hardly meant: " + text);
+  for (const auto& text : beyond_known_limits(simulation_.scene()))
+    warn("beyond what validation/studies found stable: " + text);
   say(fmt::format("{} from t = {:.6g} ms to {:.6g} ms", options_.case_name, 1e3 * start_time_,
                   1e3 * options_.end));
   write_summary("running", 0);
@@ -193,7 +227,7 @@ int RunLoop::stop_by_signal(int signal) {
   write_seam();
   write_summary(name, code);
   folder_.release_space();
-  const std::string folder = folder_.path().string();
+  const std::string folder = shell_word(folder_.path().string());
   say(fmt::format("{} at t = {:.6g} ms, checkpoint written; go on with\n  meltray resume {}", name,
                   1e3 * simulation_.time(), folder));
   if (simulation_.scene().output.checkpoint_interval > 0 && scheduled_time_ < simulation_.time())
@@ -235,12 +269,12 @@ void RunLoop::write_row() {
   history_.append(observe::history_line(row));
   if (row.density_variation > scene::DensityVariation::kAllowed && !warned_of_density_) {
     warned_of_density_ = true;
-    log_.warn(
-        fmt::format("density varies by {:.1f} % at t = {:.6g} ms, more than {:.0f} %: raise "
+    warn(fmt::format("density varies by {:.1f} % at t = {:.6g} ms, more than {:.0f} %: raise "
                     "flow.sound_speed_m_s (now {:g} m/s); the step shrinks with its inverse",
                     100 * row.density_variation, 1e3 * row.time, 100 * scene::DensityVariation::kAllowed,
                     simulation_.scene().flow.sound_speed));
   }
+  warn_of_ends(row);
   row_time_ = row.time;
   density_sum_ += row.density_variation;
   ++rows_;
@@ -302,6 +336,7 @@ void RunLoop::write_summary(const std::string& outcome, int exit_code, const std
   r.forked_from = state_.forked_from;
   r.checkpoint_time = checkpoint_time_;
   r.threads = threads();
+  r.warnings = warnings_;
   r.mean_density_variation = rows_ > 0 ? density_sum_ / static_cast<double>(rows_) : 0;
   observe::write_summary(folder_.file("summary.json"), r, &simulation_);
 }

@@ -74,6 +74,8 @@ class RunLoop {
   void write_checkpoint(bool scheduled);
   void write_summary(const std::string& outcome, int exit_code, const std::string& message = "");
   void say(const std::string& text);
+  void warn(const std::string& text);
+  void warn_of_ends(const observe::HistoryRow& row);
   bool reached(double t) const;
   double session_wall() const;
 
@@ -93,7 +95,8 @@ class RunLoop {
   std::int64_t rows_ = 0;
   double checkpoint_time_ = -1;  ///< of the newest checkpoint
   double scheduled_time_ = 0;    ///< of the last scheduled one, or where this session began
-  bool warned_of_density_ = false;
+  bool warned_of_density_ = false, warned_of_ends_ = false;
+  std::vector<std::string> warnings_;  ///< of this session
   /// Bytes by part when the last row was written.
   std::vector<std::pair<std::string, std::size_t>> memory_;
 };

@@ -79,6 +79,23 @@ void replace_file(const fs::path& path, std::string_view text) {
   replace_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+void write_file(const fs::path& path, std::string_view text) {
+  Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  if (file.get() < 0) fail("create", path, errno);
+  if (const int error = write_all(file.get(), text.data(), text.size())) fail("write", path, error);
+  if (::close(file.release()) != 0) fail("write", path, errno);
+}
+
+void check_writable(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) fail("write", path, EISDIR);
+  const bool there = fs::exists(path, ignored);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  // The slash behind the folder's name: a file in its place is refused.
+  const fs::path& needed = there ? path : folder / "";
+  if (::access(needed.c_str(), there ? W_OK : W_OK | X_OK) != 0) fail("write", path, errno);
+}
+
 std::vector<std::byte> read_bytes(const fs::path& path) {
   Descriptor file(path, O_RDONLY);
   if (file.get() < 0) fail("open", path, errno);

@@ -46,7 +46,6 @@ void columns(const HistoryRow& r, F&& f) {
   f("energy_radiation_j", r.energy.radiation);
   f("energy_ejected_j", r.energy.ejected);
   f("energy_cropped_j", r.energy.cropped);
-  f("energy_clamped_j", r.energy.clamped);
   f("energy_undeposited_j", r.energy.undeposited);
   f("energy_relative_error", r.energy_error);
   f("schema_version", kHistorySchema);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "meltray/core/errors.hpp"
+#include "meltray/core/shell.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/version.hpp"
 
@@ -33,7 +34,7 @@ std::string random_id() {
 }
 
 std::string resume_hint(const fs::path& path) {
-  return fmt::format("meltray resume {}", path.string());
+  return fmt::format("meltray resume {}", shell_word(path.string()));
 }
 
 /// Holds the lock of the marker file, or throws.

@@ -41,7 +41,6 @@ Json energy_json(const scene::EnergyBudget& e) {
           {"radiation_j", e.radiation},
           {"ejected_j", e.ejected},
           {"cropped_j", e.cropped},
-          {"clamped_j", e.clamped},
           {"undeposited_j", e.undeposited},
           {"relative_error", e.relative_error()}};
 }
@@ -127,6 +126,7 @@ std::string summary_text(const RunRecord& r, scene::Simulation* simulation) {
             {"outcome", r.outcome},
             {"exit_code", r.exit_code},
             {"message", r.message},
+            {"warnings", r.warnings},
             {"case", r.case_name},
             {"version", version()},
             {"threads", r.threads},

@@ -102,6 +102,18 @@ void for_sites(const Domain& domain, F&& f) {
       }
 }
 
+/// Volume of a site [m^3; m^2 in 2-D]: where the box is no multiple of the spacing its sites are spread evenly
+/// over it, and bodies keep their mass.
+double site_volume(const Domain& domain) {
+  double volume = 1;
+  for (int c = 0; c < domain.dimension; ++c) {
+    const double length = domain.max[c] - domain.min[c];
+    volume *= domain.arrangement == Arrangement::rotated ? domain.spacing
+                                                         : length / std::round(length / domain.spacing);
+  }
+  return volume;
+}
+
 std::size_t count_in_bodies(const Domain& domain) {
   std::size_t count = 0;
   for_sites(domain, [&](const Vec3& x, std::uint64_t) { count += body_at(domain, x) != nullptr; });
@@ -110,7 +122,7 @@ std::size_t count_in_bodies(const Domain& domain) {
 
 void add_bodies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
   const Domain& domain = scene.domain;
-  const double mass = k.density * std::pow(k.spacing, k.dim);
+  const double mass = k.density * site_volume(domain);
   for_sites(domain, [&](Vec3 x, std::uint64_t site) {
     const Body* body = body_at(domain, x);
     if (!body) return;
@@ -177,7 +189,7 @@ std::size_t count_dummies(const Domain& domain, const terms::SceneConstants& k) 
 }
 
 void add_dummies(const Scene& scene, const terms::SceneConstants& k, Particles& out) {
-  const double mass = k.density * std::pow(k.spacing, k.dim);
+  const double mass = k.density * site_volume(scene.domain);
   for_dummies(scene.domain, k, [&](const Vec3& x, int owner) {
     const Face& face = scene.domain.faces[owner];
     const double t =
@@ -200,7 +212,7 @@ void set_densities(const Scene& scene, const terms::SceneConstants& k, Particles
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!out.is_liquid(i) && !elastic) continue;
     out.density[i] = out.is_liquid(i) ? scene.material.density_of_t(out.temperature[i]) : solid;
-    out.mass[i] = out.density[i] * std::pow(k.spacing, k.dim);
+    out.mass[i] = out.density[i] * site_volume(scene.domain);
   }
 }
 
@@ -212,8 +224,7 @@ terms::SceneConstants build_constants(const Scene& scene) {
   k.spacing = scene.domain.spacing;
   k.smoothing = scene.domain.smoothing_ratio * k.spacing;
   k.density = scene.material.density;
-  k.kernel = scene.domain.kernel == KernelChoice::wendland_c2 ? sph::KernelType::wendland_c2
-                                                              : sph::KernelType::cubic_spline;
+  k.kernel = scene.domain.kernel;
   k.lattice = sph::lattice_sums(k.kernel, k.dim, k.spacing, k.smoothing);
   k.material = scene.material;
   k.free_surface = scene.flow.free_surface;

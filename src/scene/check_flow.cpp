@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
 
 #include "meltray/scene/elastic.hpp"
 #include "scene/case_check.hpp"

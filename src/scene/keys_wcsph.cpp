@@ -37,9 +37,9 @@ std::vector<Key> solver_keys() {
                      "Reference density follows the temperature, Eq. (7); replaces terms.buoyancy."),
              "false", &Preset::thermal_expansion, MELTRAY_AT(flow.thermal_expansion))
           .only_if(wcsph),
-      word<PressureGradient>(
+      word<GradientForm>(
           "flow.pressure_gradient",
-          {{"difference", PressureGradient::difference}, {"sum", PressureGradient::sum}},
+          {{"difference", GradientForm::difference}, {"sum", GradientForm::sum}},
           MELTRAY_AT(flow.pressure_gradient),
           "Pressure gradient inside the melt: differences, at rest under uniform pressure "
           "whatever the disorder, or sums as in Eq. (3), which conserve momentum pair by pair.")

@@ -27,7 +27,6 @@ class LaserCoupling {
 
   /// Resting particles that hits may heat: they belong in the patch.
   const std::vector<Index>& lit() const { return lit_; }
-  bool dark() const { return hits_.empty(); }
   const laser::Tracer& tracer() const { return tracer_; }
   const laser::Beam& beam() const { return beam_; }
   const LaserBudget& budget() const { return budget_; }

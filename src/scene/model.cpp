@@ -1,32 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scene/model.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "meltray/core/constants.hpp"
-#include "meltray/core/errors.hpp"
 #include "meltray/core/memory.hpp"
 #include "meltray/scene/expected_flow.hpp"
 
 namespace meltray::scene {
 
 namespace {
-
-terms::RecoilOnset onset(RecoilOnset o) {
-  switch (o) {
-    case RecoilOnset::smooth:
-      return terms::RecoilOnset::smooth;
-    case RecoilOnset::cutoff:
-      return terms::RecoilOnset::cutoff;
-    case RecoilOnset::ambient:
-      return terms::RecoilOnset::ambient;
-  }
-  return terms::RecoilOnset::smooth;
-}
 
 /// Time constants of the projections' corrections and of the parting of what has come too close, in times
 /// that the flow takes to cross a spacing.
@@ -55,13 +35,11 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
              scene.surface.ambient_temperature, scene.surface.temperature == SurfaceTemperature::face};
   tension_.ramp = scene.surface.activation_ramp;
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
-  recoil_ = {onset(scene.surface.recoil_onset), scene.surface.recoil_coefficient,
+  recoil_ = {scene.surface.recoil_onset, scene.surface.recoil_coefficient,
              scene.surface.recoil_pressure, scene.surface.recoil_ramp, scene.surface.recoil_radius};
   buoyancy_ = {scene.weighs(), scene.terms.buoyancy, scene.domain.gravity};
   shifting_ = {flow.shifting, flow.shifting_speed};
-  projection_options_ = {
-      scene.surface.entry == SurfaceEntry::csf ? terms::SurfaceEntry::csf : terms::SurfaceEntry::pressure,
-      flow.pressure_tolerance, flow.pressure_max_iterations};
+  projection_options_ = {scene.surface.entry, flow.pressure_solver, flow.pressure_tolerance, flow.pressure_max_iterations};
   const double crossing = constants.spacing / expected_speed(scene);
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   least_distance_ = {flow.least_distance, kPartingCrossings * crossing};
@@ -305,6 +283,13 @@ terms::ViscousOperator& Model::viscous_operator(bool implicit_part) {
   return op;
 }
 
+/// The same of conduction.
+terms::ConductionOperator& Model::conduction_operator() {
+  if (!conduction_valid_) conduction_.assemble(stage);
+  conduction_valid_ = true;
+  return conduction_;
+}
+
 void Model::add_viscous(bool implicit_part, const MutField& acceleration) {
   const auto timer = timers_.measure(Part::viscosity);
   viscous_operator(implicit_part)
@@ -356,9 +341,7 @@ void Model::add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings
 void Model::add_heat(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings) {
   const auto timer = timers_.measure(Part::heat);
   if (scene_.terms.conduction && partitions.conduction == implicit_part) {
-    if (!conduction_valid_) conduction_.assemble(stage);
-    conduction_valid_ = true;
-    crossings.boundary += conduction_.add_heating(stage, rates.heating);
+    crossings.boundary += conduction_operator().add_heating(stage, rates.heating);
   }
   if ((scene_.terms.evaporation || scene_.terms.radiation) && partitions.losses == implicit_part)
     losses_.add_heating(stage, rates.heating, crossings);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -139,6 +138,7 @@ class Model : public OdeProblem {
   void find_faces();
   void finish_rates(const double* y, double* rate, const terms::Crossings& crossings, bool transport);
   terms::ViscousOperator& viscous_operator(bool implicit_part);
+  terms::ConductionOperator& conduction_operator();
   void add_viscous(bool implicit_part, const MutField& acceleration);
   void add_forces(terms::Rates& rates, bool implicit_part, terms::Crossings& crossings);
   bool solve_viscous(double gamma, const double* known, const Components& resting, double* v, Vec3& impulse);
@@ -191,7 +191,7 @@ class Model : public OdeProblem {
       along_surface_;  ///< scratch, one entry per patch particle
   SymmetricComponents stress_rate_;
   std::vector<double> heating_, density_rate_, surface_pressure_, recoil_pressure_, recoil_average_,
-      loss_slope_, source_, other_, start_x_;
+      loss_slope_, source_, other_;
   Vec3 counted_force_ = Vec3::Zero();  ///< total force at the last force_gained() of a rate [N]
   Components solve_b_, solve_x_, at_rest_;
   std::vector<double> guess_, solve_h_b_, solve_h_x_;

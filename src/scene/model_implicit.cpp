@@ -82,12 +82,10 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
   if (losses) losses_.slope(stage, loss_slope_.data());
   solve_h_x_.assign(stage.size(), 0.0);
   if (conducts) {
-    if (!conduction_valid_) conduction_.assemble(stage);
-    conduction_valid_ = true;
     solve_h_b_.assign(stage.size(), 0.0);
     for (std::size_t k = 0; k < nh; ++k) solve_h_b_[stage.heated[k]] = bh[k];
     const int iterations =
-        conduction_.solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
+        conduction_operator().solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
                           scene_.time.linear_tolerance, kLinearIterations);
     if (iterations < 0) return false;
     counters->heat_iterations += iterations;

@@ -205,9 +205,7 @@ std::vector<StepLimit> Model::step_limits() {
   }
   if (has_elastic_solid() && !stage.elastic.empty()) limits.push_back({elastic_step(), "elastic"});
   if (scene_.terms.conduction && !partitions.conduction && !stage.heated.empty()) {
-    if (!conduction_valid_) conduction_.assemble(stage);
-    conduction_valid_ = true;
-    const double rate = conduction_.rate(stage);
+    const double rate = conduction_operator().rate(stage);
     if (rate > 0) limits.push_back({time.cfl_thermal / rate, "thermal"});
   }
   if ((scene_.terms.evaporation || scene_.terms.radiation) && !partitions.losses) {
@@ -268,11 +266,7 @@ void Model::choose_partitions(double dt) {
   };
   const Time& time = scene_.time;
   if (scene_.terms.conduction && !stage.heated.empty())
-    choose(time.conduction, partitions.conduction, [&] {
-      if (!conduction_valid_) conduction_.assemble(stage);
-      conduction_valid_ = true;
-      return conduction_.rate(stage);
-    });
+    choose(time.conduction, partitions.conduction, [&] { return conduction_operator().rate(stage); });
   if (scene_.terms.evaporation || scene_.terms.radiation)
     choose(time.evaporation, partitions.losses, [&] { return losses_.rate(stage); });
   if (!flows() || stage.moving.empty()) return;

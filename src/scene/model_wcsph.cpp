@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-
 #include "scene/model.hpp"
 
 /// The weakly compressible flow of a Model: density is a field of the state and all forces are explicit.
 namespace meltray::scene {
 
-namespace {
-
-terms::Tension tension_of(Tension t) {
-  switch (t) {
-    case Tension::full:
-      return terms::Tension::full;
-    case Tension::none:
-      return terms::Tension::none;
-    case Tension::artificial_stress:
-      return terms::Tension::artificial_stress;
-  }
-  return terms::Tension::full;
-}
-
-}  // namespace
-
 terms::AcousticPass acoustic_pass(const Scene& scene) {
   const Flow& flow = scene.flow;
   terms::AcousticPass pass;
-  pass.state = {flow.sound_speed, flow.thermal_expansion, tension_of(flow.tension),
+  pass.state = {flow.sound_speed, flow.thermal_expansion, flow.tension,
                 scene.terms.gravity ? scene.domain.gravity : 0.0};
   if (flow.density_diffusion != DensityDiffusion::none)
     pass.diffusion.coefficient = flow.diffusion_coefficient;
   pass.diffusion.form = flow.density_diffusion == DensityDiffusion::antuono
                             ? terms::DiffusionForm::antuono
                             : terms::DiffusionForm::molteni_colagrossi;
-  pass.force.form = flow.pressure_gradient == PressureGradient::sum ? terms::GradientForm::sum
-                                                                    : terms::GradientForm::difference;
+  pass.force.form = flow.pressure_gradient;
   if (scene.terms.artificial_viscosity) pass.artificial.alpha = flow.artificial_viscosity;
   terms::AcousticPass::instructions();  // a wrong MELTRAY_INSTRUCTIONS is refused at the start
   return pass;

@@ -14,6 +14,9 @@ namespace {
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
+/// Below zero by this share of the melting temperature a temperature is a numerical failure; what overshoots at
+/// a wall at 0 is less.
+constexpr double kColdest = 0.05;
 /// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
 constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
 
@@ -191,13 +194,15 @@ void Simulation::Impl::note_motion(double dt, double parted) {
 void Simulation::Impl::check(const StepReport& report) {
   const Patch& p = model.patch;
   const int dim = constants.dim;
+  const double coldest = constants.material.enthalpy(-kColdest * constants.material.solidus);
   const auto bad = [&](Index i) {
     double v2 = 0, x2 = 0;
     for (int c = 0; c < dim; ++c) {
       v2 += p.v[c][i] * p.v[c][i];
       x2 += p.x[c][i] * p.x[c][i];
     }
-    return !(v2 < kRunaway * kRunaway) || !std::isfinite(x2) || !(std::abs(p.h[i]) < kHottest);
+    return !(v2 < kRunaway * kRunaway) || !std::isfinite(x2) || !(std::abs(p.h[i]) < kHottest) ||
+           p.h[i] < coldest;
   };
   Index first = -1;
   for (const auto* which : {&model.stage.moving, &model.stage.elastic, &model.stage.heated}) {
@@ -209,16 +214,16 @@ void Simulation::Impl::check(const StepReport& report) {
   }
   if (first < 0) return;
   std::string text = fmt::format(
-      "particle {} is not finite or runs away at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, "
+      "particle {} is {} at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, "
       "{:.6g}) m, "
       "velocity ({:.4g}, {:.4g}, {:.4g}) m/s, enthalpy {:.5g} J/kg, {} neighbours, pressure {:.4g} Pa, "
       "surface "
       "pressure {:.4g} Pa",
-      p.global[first], report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
+      p.global[first], p.h[first] < coldest ? "colder than 0 K" : "not finite or runs away", report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
       p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first),
       p.pressure[first], model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
   const Index particle = p.global[first];
-  const bool of_heat = !(std::abs(p.h[first]) < kHottest);
+  const bool of_heat = !(std::abs(p.h[first]) < kHottest) || p.h[first] < coldest;
   lists_valid = false;
   select();
   model.evaluate_patch(time);

@@ -11,10 +11,10 @@ namespace meltray::scene {
 
 double EnergyBudget::relative_error() const {
   const double change = stored - initial;
-  const double supplied = laser + boundary - evaporation - radiation - ejected - cropped - clamped;
+  const double supplied = laser + boundary - evaporation - radiation - ejected - cropped;
   // Below a thousandth of what is stored, round-off of the store would pass for an error of the budget.
   double largest = std::max(std::abs(change), 1e-3 * std::abs(stored));
-  for (double item : {laser, boundary, evaporation, radiation, ejected, cropped, clamped})
+  for (double item : {laser, boundary, evaporation, radiation, ejected, cropped})
     largest = std::max(largest, std::abs(item));
   return largest > 0 ? std::abs(change - supplied) / largest : 0.0;
 }
@@ -166,7 +166,6 @@ void Simulation::archive(Archive& a) {
                             {"radiation", &s.energy.radiation},
                             {"ejected", &s.energy.ejected},
                             {"cropped", &s.energy.cropped},
-                            {"clamped", &s.energy.clamped},
                             {"undeposited", &s.energy.undeposited}})
     a.value(std::string("energy/") + name, *item);
   for (auto [name, item] : {std::pair{"initial", &s.mass.initial},

@@ -152,4 +152,43 @@ std::int64_t CholeskySolver::factor_entries() const {
   return impl_->factor ? static_cast<std::int64_t>(impl_->common.lnz) : 0;
 }
 
+namespace solve {
+
+SolveReport DirectSolver::solve(const SymmetricMatrix& a, const std::vector<double>& b,
+                                const std::vector<Index>& held, std::vector<double>& x) {
+  const Index n = a.rows();
+  start_.assign(1, 0);
+  column_.clear();
+  value_.clear();
+  right_ = b;
+  std::vector<bool> is_held(n, false);
+  for (Index i : held) is_held[i] = true;
+  for (Index i = 0; i < n; ++i) {
+    const bool alone = !(a.diagonal[i] > 0);
+    column_.push_back(i);
+    // Adding to the diagonal of a singular component holds that row at 0, since the others sum to nothing.
+    value_.push_back(alone ? 1.0 : (is_held[i] ? 2 : 1) * a.diagonal[i]);
+    if (alone) right_[i] = 0;
+    for (Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+      column_.push_back(a.column[k]);
+      value_.push_back(-static_cast<double>(a.off[k]));
+    }
+    start_.push_back(static_cast<std::int64_t>(column_.size()));
+  }
+  cholesky_.factor({start_, column_, value_});
+  x.resize(n);
+  cholesky_.solve(right_, x);
+  product_.resize(n);
+  multiply(a, x, product_);
+  double gap = 0, size = 0;
+  for (Index i = 0; i < n; ++i) {
+    if (!(a.diagonal[i] > 0)) continue;
+    gap += (b[i] - product_[i]) * (b[i] - product_[i]) / a.diagonal[i];
+    size += b[i] * b[i] / a.diagonal[i];
+  }
+  return {0, size > 0 ? std::sqrt(gap / size) : 0.0, true};
+}
+
+}  // namespace solve
+
 }  // namespace meltray

@@ -118,7 +118,7 @@ void pressure_solve(benchmark::State& state) {
   projection.assemble(b.stage);
   std::vector<double> source;
   projection.divergence(b.stage, view(static_cast<const Components&>(b.patch.v)), source);
-  const terms::ProjectionOptions options{terms::SurfaceEntry::csf,
+  const terms::ProjectionOptions options{terms::SurfaceEntry::csf, terms::PressureSolver::conjugate_gradients,
                                          std::pow(10.0, -static_cast<double>(state.range(1))), 2000};
   int iterations = 0;
   for (auto _ : state) {

@@ -31,7 +31,7 @@ def without_field(data, name):
     with h5py.File(file, "r+") as f:
         del f[name]
     image = file.getvalue()
-    text = f"meltray checkpoint\nschema 2\nbytes {len(image)}\nfnv1a64 {fnv1a(image):016x}\n".encode()
+    text = f"meltray checkpoint\nschema 3\nbytes {len(image)}\nfnv1a64 {fnv1a(image):016x}\n".encode()
     return text.ljust(BLOCK, b"\0") + image
 
 
@@ -67,8 +67,8 @@ class DamagedFiles(Scratch):
             "flipped byte in the checksum": (lambda b: flipped(b, b.index(b"fnv1a64 ") + 9), "damaged checkpoint"),
             "not HDF5": (lambda b: b"time_s,power_w\n" * 100, "not a Meltray checkpoint"),
             "another HDF5 file": (lambda b: snapshot, "not a Meltray checkpoint", "HDF5 file of another kind"),
-            "another schema": (lambda b: b.replace(b"schema 2\n", b"schema 9\n", 1), "checkpoint schema 9",
-                               "reads schema 2"),
+            "another schema": (lambda b: b.replace(b"schema 3\n", b"schema 9\n", 1), "checkpoint schema 9",
+                               "reads schema 3"),
             "empty": (lambda b: b"", "not a Meltray checkpoint", "empty"),
             "zeros": (lambda b: bytes(len(b)), "not a Meltray checkpoint"),
             "of another run": (lambda b: other, "checkpoint of another run"),

@@ -13,7 +13,7 @@
 
 namespace meltray::observe {
 
-inline constexpr int kCheckpointSchema = 2;
+inline constexpr int kCheckpointSchema = 3;
 
 /// What a checkpoint says about itself.
 struct CheckpointHeader {

@@ -19,6 +19,11 @@ void replace_file(const std::filesystem::path& path, std::string_view text);
 void replace_file(const std::filesystem::path& path,
                   std::initializer_list<std::span<const std::byte>> pieces);
 
+/// Writes `text` in place, so that `path` may also be a device such as /dev/stdout. Throws IoError.
+void write_file(const std::filesystem::path& path, std::string_view text);
+/// Throws IoError where write_file() could not write: to be known before the work whose result goes there.
+void check_writable(const std::filesystem::path& path);
+
 /// Whole file. Throws IoError when it cannot be read.
 std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 std::string read_text(const std::filesystem::path& path);

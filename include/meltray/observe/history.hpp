@@ -12,7 +12,7 @@
 
 namespace meltray::observe {
 
-inline constexpr int kHistorySchema = 2;
+inline constexpr int kHistorySchema = 3;
 
 /// Steps since the last row of history.csv; part of a checkpoint, so that a resumed run writes the same next
 /// row.

@@ -11,7 +11,7 @@
 
 namespace meltray::observe {
 
-inline constexpr int kSummarySchema = 1;
+inline constexpr int kSummarySchema = 2;
 
 /// What the simulation itself does not know about a run.
 struct RunRecord {
@@ -28,6 +28,7 @@ struct RunRecord {
   std::string forked_from;      ///< folder and time, empty for an ordinary run
   double checkpoint_time = -1;  ///< [s]; negative: none
   int threads = 1;
+  std::vector<std::string> warnings;  ///< of the last session
   double mean_density_variation = 0;  ///< over the rows of history.csv
   /// Bytes by part when a row of history.csv was last written.
   std::vector<std::pair<std::string, std::size_t>> memory;

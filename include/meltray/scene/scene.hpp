@@ -6,27 +6,31 @@
 #include <string>
 #include <vector>
 
+#include "meltray/core/constants.hpp"
 #include "meltray/core/vec.hpp"
 #include "meltray/laser/beam.hpp"
 #include "meltray/laser/laser.hpp"
 #include "meltray/materials/material.hpp"
+#include "meltray/sph/kernel.hpp"
+#include "meltray/terms/pressure/projection.hpp"
+#include "meltray/terms/pressure/weakly_compressible.hpp"
+#include "meltray/terms/surface_forces.hpp"
 #include "meltray/time/integrator.hpp"
 
 /// A scene is what a case file says, checked and with every default filled in; nothing is computed yet.
 namespace meltray::scene {
 
-enum class KernelChoice { wendland_c2, cubic_spline };
+// Choices that a term or a room below declares keep their names there.
+using sph::KernelType;
+using terms::GradientForm, terms::PressureSolver, terms::RecoilOnset, terms::SurfaceEntry, terms::Tension;
+
 enum class Arrangement { lattice, jittered, rotated };
 enum class FaceKind { free, wall, periodic };
 enum class ThermalKind { adiabatic, temperature, flux };
 enum class FlowSolver { isph, wcsph };
 enum class SolidModel { fixed, elastic };
-enum class PressureGradient { sum, difference };
-enum class Tension { full, none, artificial_stress };
 enum class DensityDiffusion { none, molteni_colagrossi, antuono };
 enum class Projection { step, stage };
-enum class SurfaceEntry { csf, pressure };
-enum class RecoilOnset { smooth, cutoff, ambient };
 enum class PartitionChoice { automatic, explicit_, implicit_ };
 enum class Optics { by_phase, solid, hot_melt };
 enum class VelocityField { none, taylor_green, rotation };
@@ -60,11 +64,11 @@ struct Domain {
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();
   double spacing = 0;            ///< [m]
   double smoothing_ratio = 1.3;  ///< h / spacing
-  KernelChoice kernel = KernelChoice::wendland_c2;
+  KernelType kernel = KernelType::wendland_c2;
   Arrangement arrangement = Arrangement::lattice;
   double jitter = 0;          ///< displacement of the lattice points, fraction of the spacing
   int seed = 1;               ///< of the jitter
-  double gravity = 9.80665;   ///< downwards [m/s^2]
+  double gravity = constants::standard_gravity;   ///< downwards [m/s^2]
   std::array<Face, 6> faces;  ///< x_min, x_max, y_min, y_max, z_min, z_max
   std::vector<Body> bodies;
   VelocityField velocity_field = VelocityField::none;
@@ -85,7 +89,7 @@ struct Flow {
   SolidModel solid = SolidModel::fixed;
   double sound_speed = 0;          ///< numerical, of the equation of state [m/s]
   bool thermal_expansion = false;  ///< reference density follows the temperature
-  PressureGradient pressure_gradient = PressureGradient::difference;
+  GradientForm pressure_gradient = GradientForm::difference;
   Tension tension = Tension::full;
   DensityDiffusion density_diffusion = DensityDiffusion::antuono;
   double diffusion_coefficient = 0.1;      ///< delta of the density diffusion
@@ -96,6 +100,7 @@ struct Flow {
   double elastic_depth = 0;                ///< from the melt, within which solid moves [m]
   Projection projection = Projection::step;
   double pressure_tolerance = 1e-3;  ///< relative residual of the Poisson solve
+  PressureSolver pressure_solver = PressureSolver::conjugate_gradients;
   int pressure_max_iterations = 500;
   bool free_surface = true;     ///< false: the fluid fills a closed or periodic box
   double drift_time = 0;        ///< in which errors of density are taken back [s]; 0: from the scene's speeds

@@ -16,8 +16,8 @@
 namespace meltray::scene {
 
 /// Energy since t = 0 [J], each item accumulated where it happens. Closes when
-/// stored - initial = laser + boundary - evaporation - radiation - ejected - cropped - clamped (relative to
-/// the largest).
+/// stored - initial = laser + boundary - evaporation - radiation - ejected - cropped (relative to the
+/// largest).
 struct EnergyBudget {
   double initial = 0, stored = 0;  ///< enthalpy of all particles still in the scene
   double laser = 0;                ///< absorbed by particles
@@ -25,7 +25,6 @@ struct EnergyBudget {
   double evaporation = 0, radiation = 0;
   double ejected = 0;      ///< enthalpy of particles that left through a free face
   double cropped = 0;      ///< the same through a wall, where the workpiece was cropped
-  double clamped = 0;      ///< taken away by limits on single particles (never silent)
   double undeposited = 0;  ///< laser power that found no particle (counted, not part of `laser`)
   double relative_error() const;
 };

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "meltray/core/vec.hpp"
+#include "meltray/solve/conjugate_gradient.hpp"
 
 namespace meltray {
 
@@ -19,7 +20,7 @@ struct CsrView {
 };
 
 /// Sparse Cholesky factorisation (CHOLMOD) of a symmetric positive definite matrix: the exact answer that
-/// iterative solvers are judged by in tests.
+/// iterative solvers are judged by.
 class CholeskySolver {
  public:
   CholeskySolver();
@@ -40,4 +41,23 @@ class CholeskySolver {
   std::unique_ptr<Impl> impl_;
 };
 
+namespace solve {
+
+/// Exact solution of A x = b in place of ConjugateGradient.
+class DirectSolver {
+ public:
+  /// `x` of rows in `held`, and of rows without entries, is 0: one row of each component that is singular has
+  /// to be held, and b has no sum there. Returns a report with no iterations. Throws NumericalFailure if A is
+  /// not positive definite otherwise.
+  SolveReport solve(const SymmetricMatrix& a, const std::vector<double>& b, const std::vector<Index>& held,
+                    std::vector<double>& x);
+
+ private:
+  CholeskySolver cholesky_;
+  std::vector<std::int64_t> start_;
+  std::vector<Index> column_;
+  std::vector<double> value_, product_, right_;
+};
+
+}  // namespace solve
 }  // namespace meltray

@@ -113,7 +113,8 @@ scene::Overrides tolerances(const scene::Scene& s, double factor) {
   return {"time.fixed_step_s=0", fmt::format("time.rtol={}", std::min(0.5, factor * s.time.rtol)),
           fmt::format("time.atol_position={}", factor * s.time.atol_position),
           fmt::format("time.atol_velocity_m_s={}", factor * s.time.atol_velocity),
-          fmt::format("time.atol_temperature_k={}", factor * s.time.atol_temperature)};
+          fmt::format("time.atol_temperature_k={}", factor * s.time.atol_temperature),
+          fmt::format("time.atol_density={}", factor * s.time.atol_density)};
 }
 
 Variant reference_variant(const scene::Scene& s, const std::string& model) {

@@ -234,11 +234,25 @@ solve::SolveReport Projection::solve(const Stage& s, const std::vector<double>& 
       if (group_[r] > 0 && share(r) > 0) a[r] -= group_sum_[group_[r]] * share(r) / group_share_[group_[r]];
   };
   if (floating_ > 0) remove(rhs_, [&](Index r) { return matrix_.diagonal[r]; });
-  const auto report = cg_.solve(matrix_, rhs_, x_, options.tolerance, options.max_iterations);
+  const auto report = options.solver == PressureSolver::cholesky
+                          ? solve_exactly()
+                          : cg_.solve(matrix_, rhs_, x_, options.tolerance, options.max_iterations);
   if (floating_ > 0) remove(x_, [](Index) { return 1.0; });
   std::fill(s.patch->pressure.begin(), s.patch->pressure.end(), 0.0);
   parallel_for(rows(), [&](Index r) { s.patch->pressure[particle_of_[r]] = x_[r]; });
   return report;
+}
+
+solve::SolveReport Projection::solve_exactly() {
+  if (!direct_) direct_.emplace();
+  std::vector<Index> held;  // the first row of each pocket
+  std::vector<bool> seen(static_cast<std::size_t>(floating_) + 1, false);
+  for (Index r = 0; r < rows(); ++r)
+    if (group_[r] > 0 && !seen[group_[r]]) {
+      seen[group_[r]] = true;
+      held.push_back(r);
+    }
+  return direct_->solve(matrix_, rhs_, held, x_);
 }
 
 void Projection::add_acceleration(const Stage& s, SurfaceEntry entry, const MutField& acceleration) const {

@@ -8,6 +8,20 @@
 
 using namespace meltray;
 
+TEST_CASE("the command of a run can be pasted into a shell") {
+  const TemporaryFolder t;
+  app::ListedRun plain{"cases/weld.toml", t / "weld-1", {"laser.power_w=500"}, 1e-3};
+  CHECK(app::command_of(plain) == "meltray run cases/weld.toml --out " + (t / "weld-1").string() +
+                                      " --until 0.001 --set laser.power_w=500");
+  const std::string folder = "'" + (t / "my welds").string() + "'";
+  app::ListedRun spaced{"it's.toml", t / "my welds", {"surface.temperature=\"face\""}, 1e-3};
+  CHECK(app::command_of(spaced) == "meltray run 'it'\\''s.toml' --out " + folder +
+                                       " --until 0.001 --set 'surface.temperature=\"face\"'");
+  std::filesystem::create_directory(spaced.folder);
+  observe::replace_file(spaced.folder / ".meltray-run", std::string_view("{}"));
+  CHECK(app::command_of(spaced) == "meltray resume " + folder + " --until 0.001");
+}
+
 TEST_CASE("a run of a list has the spacing of its own case, not of the list's") {
   const TemporaryFolder t;
   observe::replace_file(t / "case.toml",

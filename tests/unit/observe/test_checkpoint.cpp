@@ -99,9 +99,9 @@ TEST_CASE("damaged and foreign checkpoints are refused by name") {
   }
   SECTION("another schema") {
     std::string text = read_text(file);
-    text.replace(text.find("schema 2"), 8, "schema 7");
+    text.replace(text.find("schema 3"), 8, "schema 7");
     replace_file(file, std::string_view(text));
-    CHECK_THROWS_WITH(open_checkpoint(file, "run-1"), Contains("schema 7") && Contains("reads schema 2"));
+    CHECK_THROWS_WITH(open_checkpoint(file, "run-1"), Contains("schema 7") && Contains("reads schema 3"));
   }
   SECTION("not HDF5, and HDF5 of another kind") {
     replace_file(file, std::string_view("once upon a time"));

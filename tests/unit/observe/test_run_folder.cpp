@@ -65,6 +65,11 @@ TEST_CASE("an explicit folder that is not empty is refused") {
     CHECK_THROWS_WITH(RunFolder::create(in(out)),
                       Contains("unfinished") && Contains("meltray resume " + out.string()));
   }
+  SECTION("unfinished: the resume command can be pasted") {
+    const fs::path spaced = t / "my run";
+    { RunFolder::create(in(spaced)); }
+    CHECK_THROWS_WITH(RunFolder::create(in(spaced)), Contains("meltray resume '" + spaced.string() + "'"));
+  }
   SECTION("finished: --overwrite replaces what a run writes and nothing else") {
     { RunFolder::create(in(out)); }
     set_outcome(out, "finished");
@@ -106,4 +111,21 @@ TEST_CASE("a file is replaced as a whole or not at all") {
   fs::create_directories(t / "d/inside");
   CHECK_THROWS_AS(replace_file(t / "d", std::string_view("x")), IoError);
   CHECK_FALSE(fs::exists(t / "d.part"));
+}
+
+TEST_CASE("what cannot be written is known before") {
+  TemporaryFolder t;
+  CHECK_NOTHROW(check_writable(t / "f"));
+  CHECK_FALSE(fs::exists(t / "f"));
+  CHECK_NOTHROW(check_writable("f-in-the-working-folder"));
+  write_file(t / "f", "longer");
+  write_file(t / "f", "text");
+  CHECK(read_text(t / "f") == "text");
+  CHECK_NOTHROW(check_writable(t / "f"));
+  CHECK_NOTHROW(check_writable("/dev/null"));
+  CHECK_NOTHROW(write_file("/dev/null", "text"));
+  CHECK_THROWS_WITH(check_writable(t / "none/f"), Contains((t / "none/f").string()));
+  CHECK_THROWS_AS(write_file(t / "none/f", "text"), IoError);
+  CHECK_THROWS_AS(check_writable(t / "f/f"), IoError);  // a file in place of the folder
+  CHECK_THROWS_AS(check_writable(t.path()), IoError);
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "meltray/solve/conjugate_gradient.hpp"
+#include "meltray/solve/direct.hpp"
 #include "meltray/terms/term.hpp"
 
 namespace meltray::terms {
@@ -13,8 +16,13 @@ namespace meltray::terms {
 ///   pressure: q is only the boundary value of p, and the gradient is the renormalised difference form.
 enum class SurfaceEntry { csf, pressure };
 
+/// How the Poisson equation is solved: to a tolerance by conjugate gradients, or exactly by sparse Cholesky
+/// factors (CHOLMOD), which small scenes can afford.
+enum class PressureSolver { conjugate_gradients, cholesky };
+
 struct ProjectionOptions {
   SurfaceEntry entry = SurfaceEntry::csf;
+  PressureSolver solver = PressureSolver::conjugate_gradients;
   double tolerance = 1e-3;
   int max_iterations = 500;
 };
@@ -54,6 +62,7 @@ class Projection {
   template <int D>
   double sliding(const Stage& stage, Index i, const ConstField& u) const;
   const double* partner_volume(const Stage& stage, Index i) const;
+  solve::SolveReport solve_exactly();
 
   std::vector<Index> row_of_, particle_of_;  ///< patch index <-> row
   solve::SymmetricMatrix matrix_;
@@ -64,6 +73,7 @@ class Projection {
   std::vector<double> group_sum_, group_share_;
   Index floating_ = 0;
   solve::ConjugateGradient cg_;
+  std::optional<solve::DirectSolver> direct_;  ///< once asked for
 };
 
 }  // namespace meltray::terms
