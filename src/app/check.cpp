@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "app/doubtful_settings.hpp"
 #include "app/known_limits.hpp"
 #include "app/run_estimate.hpp"
 #include "meltray/app/commands.hpp"

@@ -12,7 +12,4 @@ namespace meltray::app {
 /// found and what would do; empty for most.
 std::vector<std::string> beyond_known_limits(const scene::Scene& scene);
 
-/// Settings of a weld that are allowed and hardly meant: one sentence each; empty for most.
-std::vector<std::string> doubtful_settings(const scene::Scene& scene);
-
 }  // namespace meltray::app

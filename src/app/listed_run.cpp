@@ -9,16 +9,17 @@
 #include "app/toml_file.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/shell.hpp"
 #include "meltray/observe/run_folder.hpp"
 
 namespace meltray::app {
 
 std::string command_of(const ListedRun& r) {
   if (observe::is_run_folder(r.folder))
-    return fmt::format("meltray resume {} --until {}", r.folder.string(), r.until);
-  std::string text =
-      fmt::format("meltray run {} --out {} --until {}", r.case_file.string(), r.folder.string(), r.until);
-  for (const auto& s : r.set) text += " --set " + s;
+    return fmt::format("meltray resume {} --until {}", shell_word(r.folder.string()), r.until);
+  std::string text = fmt::format("meltray run {} --out {} --until {}", shell_word(r.case_file.string()),
+                                 shell_word(r.folder.string()), r.until);
+  for (const auto& s : r.set) text += " --set " + shell_word(s);
   return text;
 }
 

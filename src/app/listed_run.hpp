@@ -16,7 +16,7 @@ struct ListedRun {
   double until = 0;  ///< [s]
 };
 
-/// The command line that does the run, or goes on with it where its folder is there.
+/// The command line that does the run, or goes on with it where its folder is there, quoted for a shell.
 std::string command_of(const ListedRun& run);
 
 /// Spacing of the particles of a run folder [m], as its own case file has it; 0 where it has none.

@@ -9,6 +9,7 @@
 #include "app/threads.hpp"
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
+#include "meltray/core/shell.hpp"
 #include "meltray/scene/case_file.hpp"
 
 namespace meltray::app {
@@ -111,9 +112,9 @@ int resume(const ResumeArguments& arguments) {
   }
   if (!checkpoint && ended)
     throw UsageError(
-        fmt::format("{}: {} at t = {:.9g} s, but its checkpoints are gone; `meltray run --overwrite` "
-                    "starts it anew and replaces what it has",
-                    folder.path().string(), outcome, done));
+        fmt::format("{}: {} at t = {:.9g} s, but its checkpoints are gone; start it anew and replace what it "
+                    "has with\n  meltray run CASE --out {} --overwrite",
+                    folder.path().string(), outcome, done, shell_word(folder.path().string())));
   if (end > scene.time.end) {
     scene.time.end = end;
     write_case_file(folder, scene);

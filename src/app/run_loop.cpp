@@ -8,12 +8,13 @@
 #include <csignal>
 #include <numeric>
 
+#include "app/doubtful_settings.hpp"
 #include "app/known_limits.hpp"
 #include "app/schedule.hpp"
 #include "app/signals.hpp"
 #include "meltray/core/errors.hpp"
-#include "meltray/core/shell.hpp"
 #include "meltray/core/parallel.hpp"
+#include "meltray/core/shell.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/pool.hpp"
 #include "meltray/observe/version.hpp"
@@ -137,9 +138,10 @@ void RunLoop::warn_of_ends(const observe::HistoryRow& row) {
              wide = domain.dimension == 3 && row.pool_width > width - near;
   if (!deep && !wide) return;
   warned_of_ends_ = true;
-  warn(fmt::format("{} at the {} of the bodies at t = {:.6g} ms: its size is theirs from now on; larger bodies",
-                   row.capillary_depth > -bottom - near ? "the capillary is" : "the melt is",
-                   deep ? "bottom" : "sides", 1e3 * row.time));
+  warn(fmt::format(
+      "{} at the {} of the bodies at t = {:.6g} ms: its size is theirs from now on; larger bodies",
+      row.capillary_depth > -bottom - near ? "the capillary is" : "the melt is", deep ? "bottom" : "sides",
+      1e3 * row.time));
 }
 
 int RunLoop::run() {
@@ -269,7 +271,8 @@ void RunLoop::write_row() {
   history_.append(observe::history_line(row));
   if (row.density_variation > scene::DensityVariation::kAllowed && !warned_of_density_) {
     warned_of_density_ = true;
-    warn(fmt::format("density varies by {:.1f} % at t = {:.6g} ms, more than {:.0f} %: raise "
+    warn(
+        fmt::format("density varies by {:.1f} % at t = {:.6g} ms, more than {:.0f} %: raise "
                     "flow.sound_speed_m_s (now {:g} m/s); the step shrinks with its inverse",
                     100 * row.density_variation, 1e3 * row.time, 100 * scene::DensityVariation::kAllowed,
                     simulation_.scene().flow.sound_speed));

@@ -102,8 +102,8 @@ void for_sites(const Domain& domain, F&& f) {
       }
 }
 
-/// Volume of a site [m^3; m^2 in 2-D]: where the box is no multiple of the spacing its sites are spread evenly
-/// over it, and bodies keep their mass.
+/// Volume of a site [m^3; m^2 in 2-D]: where the box is no multiple of the spacing its sites are spread
+/// evenly over it, and bodies keep their mass.
 double site_volume(const Domain& domain) {
   double volume = 1;
   for (int c = 0; c < domain.dimension; ++c) {

@@ -59,10 +59,9 @@ std::vector<Key> domain_keys() {
           .required(),
       number("domain.smoothing_ratio", "", between(1, 3), MELTRAY_AT(domain.smoothing_ratio),
              "Smoothing length over particle distance; the kernel reaches two smoothing lengths."),
-      word<KernelType>(
-          "domain.kernel",
-          {{"wendland_c2", KernelType::wendland_c2}, {"cubic_spline", KernelType::cubic_spline}},
-          MELTRAY_AT(domain.kernel), "Smoothing kernel."),
+      word<KernelType>("domain.kernel",
+                       {{"wendland_c2", KernelType::wendland_c2}, {"cubic_spline", KernelType::cubic_spline}},
+                       MELTRAY_AT(domain.kernel), "Smoothing kernel."),
       word<Arrangement>(
           "domain.arrangement",
           {{"lattice", Arrangement::lattice},

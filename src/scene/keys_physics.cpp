@@ -52,11 +52,12 @@ std::vector<Key> flow_keys() {
              "Relative residual at which the pressure solve ends.")
           .only_if(pressure)
           .only_if(isph),
-      word<PressureSolver>("flow.pressure_solver",
-                           {{"conjugate_gradients", PressureSolver::conjugate_gradients},
-                            {"cholesky", PressureSolver::cholesky}},
-                           MELTRAY_AT(flow.pressure_solver),
-                           "\"cholesky\": exactly, by sparse factors (CHOLMOD), to judge the other by; for small scenes.")
+      word<PressureSolver>(
+          "flow.pressure_solver",
+          {{"conjugate_gradients", PressureSolver::conjugate_gradients},
+           {"cholesky", PressureSolver::cholesky}},
+          MELTRAY_AT(flow.pressure_solver),
+          "\"cholesky\": exactly, by sparse factors (CHOLMOD), to judge the other by; for small scenes.")
           .only_if(pressure)
           .only_if(isph),
       integer("flow.pressure_max_iterations", between(1, 1000000), MELTRAY_AT(flow.pressure_max_iterations),

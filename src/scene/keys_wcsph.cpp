@@ -38,8 +38,7 @@ std::vector<Key> solver_keys() {
              "false", &Preset::thermal_expansion, MELTRAY_AT(flow.thermal_expansion))
           .only_if(wcsph),
       word<GradientForm>(
-          "flow.pressure_gradient",
-          {{"difference", GradientForm::difference}, {"sum", GradientForm::sum}},
+          "flow.pressure_gradient", {{"difference", GradientForm::difference}, {"sum", GradientForm::sum}},
           MELTRAY_AT(flow.pressure_gradient),
           "Pressure gradient inside the melt: differences, at rest under uniform pressure "
           "whatever the disorder, or sums as in Eq. (3), which conserve momentum pair by pair.")

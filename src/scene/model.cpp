@@ -35,11 +35,12 @@ Model::Model(const Scene& scene, const terms::SceneConstants& constants, Timers&
              scene.surface.ambient_temperature, scene.surface.temperature == SurfaceTemperature::face};
   tension_.ramp = scene.surface.activation_ramp;
   wetting_.contact_angle_deg = scene.material.contact_angle_deg;
-  recoil_ = {scene.surface.recoil_onset, scene.surface.recoil_coefficient,
-             scene.surface.recoil_pressure, scene.surface.recoil_ramp, scene.surface.recoil_radius};
+  recoil_ = {scene.surface.recoil_onset, scene.surface.recoil_coefficient, scene.surface.recoil_pressure,
+             scene.surface.recoil_ramp, scene.surface.recoil_radius};
   buoyancy_ = {scene.weighs(), scene.terms.buoyancy, scene.domain.gravity};
   shifting_ = {flow.shifting, flow.shifting_speed};
-  projection_options_ = {scene.surface.entry, flow.pressure_solver, flow.pressure_tolerance, flow.pressure_max_iterations};
+  projection_options_ = {scene.surface.entry, flow.pressure_solver, flow.pressure_tolerance,
+                         flow.pressure_max_iterations};
   const double crossing = constants.spacing / expected_speed(scene);
   drift_time = flow.drift_time > 0 ? flow.drift_time : kDriftCrossings * crossing;
   least_distance_ = {flow.least_distance, kPartingCrossings * crossing};

@@ -86,7 +86,7 @@ bool Model::solve_implicit(double t, const double* y, double gamma, double* b) {
     for (std::size_t k = 0; k < nh; ++k) solve_h_b_[stage.heated[k]] = bh[k];
     const int iterations =
         conduction_operator().solve(stage, gamma, loss_slope_.data(), solve_h_b_.data(), solve_h_x_.data(),
-                          scene_.time.linear_tolerance, kLinearIterations);
+                                    scene_.time.linear_tolerance, kLinearIterations);
     if (iterations < 0) return false;
     counters->heat_iterations += iterations;
     for (std::size_t k = 0; k < nh; ++k) bh[k] = solve_h_x_[stage.heated[k]];

@@ -14,8 +14,8 @@ namespace {
 constexpr double kRunaway = 1000;
 /// Enthalpy beyond which heat has run away: some 100,000 K in a metal [J/kg].
 constexpr double kHottest = 1e8;
-/// Below zero by this share of the melting temperature a temperature is a numerical failure; what overshoots at
-/// a wall at 0 is less.
+/// Below zero by this share of the melting temperature a temperature is a numerical failure; what overshoots
+/// at a wall at 0 is less.
 constexpr double kColdest = 0.05;
 /// Partitions of "auto" terms are reconsidered, and the density is looked at, every so many steps.
 constexpr std::int64_t kPartitionSteps = 10, kDensitySteps = 10;
@@ -219,9 +219,10 @@ void Simulation::Impl::check(const StepReport& report) {
       "velocity ({:.4g}, {:.4g}, {:.4g}) m/s, enthalpy {:.5g} J/kg, {} neighbours, pressure {:.4g} Pa, "
       "surface "
       "pressure {:.4g} Pa",
-      p.global[first], p.h[first] < coldest ? "colder than 0 K" : "not finite or runs away", report.t, report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0,
-      p.v[0][first], p.v[1][first], dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first),
-      p.pressure[first], model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
+      p.global[first], p.h[first] < coldest ? "colder than 0 K" : "not finite or runs away", report.t,
+      report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0, p.v[0][first], p.v[1][first],
+      dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first), p.pressure[first],
+      model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
   const Index particle = p.global[first];
   const bool of_heat = !(std::abs(p.h[first]) < kHottest) || p.h[first] < coldest;
   lists_valid = false;

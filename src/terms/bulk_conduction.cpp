@@ -31,11 +31,11 @@ void BulkConduction::build(const SceneConstants& constants, PatchSelector& selec
   assemble(constants, pairs, !particles.stress[0].empty(), rests);
 }
 
-/// Conductances of the pairs of which one at least is awake; the others are left out of the rows. `elastic`: a
-/// scene whose solid has stresses.
+/// Conductances of the pairs of which one at least is awake; the others are left out of the rows. `elastic`:
+/// a scene whose solid has stresses.
 template <class Rests>
 void BulkConduction::assemble(const SceneConstants& constants, const sph::PairList& pairs, bool elastic,
-                               Rests&& rests) {
+                              Rests&& rests) {
   const Index n = patch_.size();
   const auto& material = constants.material;
   lambda_.resize(n);

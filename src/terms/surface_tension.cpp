@@ -37,8 +37,9 @@ double SurfaceTension::activation(const Stage& s, Index i) const {
 /// Normals averaged over surface neighbours, twice: those of single particles follow the steps of the
 /// lattice, and a curvature taken from them comes out up to 1.8 times too large on a ball of 20 particles'
 /// radius. Only melt takes part, here and below: the face of dry solid beside a line of contact is no part of
-/// the surface that pulls, and would read as a sharp corner of it. Where a wall prescribes the normal it is held: averaged with those above the wall only, it would
-/// lose half of its turn, and with it half of the force that moves the line of contact.
+/// the surface that pulls, and would read as a sharp corner of it. Where a wall prescribes the normal it is
+/// held: averaged with those above the wall only, it would lose half of its turn, and with it half of the
+/// force that moves the line of contact.
 void SurfaceTension::smooth_normals(const Stage& s) const {
   constexpr int kPasses = 2;
   sph::with_dim(s.constants->dim, [&](auto d) {

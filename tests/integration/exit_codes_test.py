@@ -80,12 +80,13 @@ class Usage(Scratch):
 
     def test_unknown_option_is_answered_with_the_nearest(self):
         """Whatever else is wrong because of it."""
-        for arguments, message in ((("run", WELD, "--thread", "4"), "--thread: no such option of run; nearest: --threads"),
-                                   (("run", "--thread=4", WELD), "--thread: no such option of run; nearest: --threads"),
-                                   (("run", "--quite"), "--quite: no such option of run; nearest: --quiet"),
-                                   (("study", "splitting", "drop", "--smal"),
-                                    "--smal: no such option of study splitting; nearest: --small"),
-                                   (("--versoin",), "--versoin: no such option of meltray; nearest: --version")):
+        threads = "--thread: no such option of run; nearest: --threads"
+        for arguments, message in (
+                (("run", WELD, "--thread", "4"), threads), (("run", "--thread=4", WELD), threads),
+                (("run", "--quite"), "--quite: no such option of run; nearest: --quiet"),
+                (("study", "splitting", "drop", "--smal"),
+                 "--smal: no such option of study splitting; nearest: --small"),
+                (("--versoin",), "--versoin: no such option of meltray; nearest: --version")):
             with self.subTest(arguments):
                 done = meltray(*arguments, cwd=self.folder)
                 self.assertEqual((done.returncode, done.stdout), (2, ""))
@@ -208,7 +209,8 @@ class Folders(Scratch):
 class InputOutput(Scratch):
     def test_full_device(self):
         """A long output, whose buffer overflows, and short ones, which are written at the very end."""
-        for arguments in (("list", "keys"), ("list", "cases"), ("list", "kernels"), ("--version",), ("run", "--help")):
+        for arguments in (("list", "keys"), ("list", "cases"), ("list", "kernels"), ("--version",),
+                          ("run", "--help")):
             with self.subTest(arguments), open("/dev/full", "w", encoding="utf-8") as full:
                 done = meltray(*arguments, stdout=full)
                 self.assertEqual(done.returncode, 4, done.stderr)
@@ -218,7 +220,7 @@ class InputOutput(Scratch):
         """Known before anything is computed."""
         missing = self.folder / "nowhere" / "results.json"
         for arguments in (("validate", "fresnel_angles", "--small"),
-                          ("study", "splitting", "drop", "--small", "--out", self.folder / "out")):
+                          ("study", "splitting", "heat_melting", "--small", "--out", self.folder / "out")):
             for file in (missing, self.folder, self.write("file", "") / "results.json"):
                 with self.subTest((*arguments, file)):
                     done = meltray(*arguments, "--json", file)

@@ -20,7 +20,7 @@ ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive"}
 
 # What may differ between two runs of the same case: how long they took, in how many sessions, on how many threads.
 SESSION_KEYS = {"wall_seconds", "session_wall_seconds", "session_start_s", "resumed", "forked_from", "peak_memory_bytes",
-                "wall_seconds_per_simulated_ms", "time_by_part", "memory_by_part_bytes", "threads"}
+                "wall_seconds_per_simulated_ms", "time_by_part", "memory_by_part_bytes", "threads", "warnings"}
 SESSION_STATE = {"run/wall_seconds", "run/resumed"}
 
 
@@ -33,10 +33,10 @@ def main():
     unittest.main(verbosity=2)
 
 
-def meltray(*arguments, cwd=None, timeout=300):
-    """The finished process; its output is text."""
+def meltray(*arguments, cwd=None, timeout=300, stdout=subprocess.PIPE):
+    """The finished process; its output is text, unless `stdout` says where it goes."""
     return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, check=False, text=True,
-                          env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                          env=ENVIRONMENT, stdout=stdout, stderr=subprocess.PIPE)
 
 
 def start(*arguments, cwd=None):

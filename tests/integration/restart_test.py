@@ -192,6 +192,7 @@ class Restart(Scratch):
         done = meltray("resume", folder, "--quiet", "--until", "1e-2")
         self.assertEqual(done.returncode, 2)
         self.assertIn("its checkpoints are gone", done.stderr)
+        self.assertIn(f"--out {folder} --overwrite", done.stderr)
         self.assertEqual((folder / "history.csv").read_bytes(), before)
 
     def test_fork(self):

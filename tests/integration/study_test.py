@@ -40,8 +40,8 @@ class Studies(Scratch):
             self.assertAlmostEqual(coarse / fine, 2, delta=0.2)
         for low, high in zip(first, errors("imex 2")):
             self.assertLess(high, low / 10)
-        # Steps of 200 us are beyond the limit of explicit conduction.
-        self.assertGreater(errors("explicit 2")[0], 1)
+        # Steps of 200 us are beyond the limit of explicit conduction: the run ends below 0 K.
+        self.assertIsNone(errors("explicit 2")[0])
         for reference in found["references"]:
             self.assertLess(reference["uncertainty"], 1e-5)
         self.assertIn("wins in both", words)

@@ -5,6 +5,8 @@
 usage: welds_test.py PROGRAM [unittest options]
 """
 import json
+import pathlib
+import shlex
 
 from meltray_runner import Scratch, main, meltray
 
@@ -38,7 +40,6 @@ class Welds(Scratch):
         self.assertEqual([line for line in every if "ss316-0.6m-s-208w" in line], list(set(every) - set(left)))
 
     def test_depths_and_slopes_are_judged(self):
-        self.assertIn("0 rows judged: 0 passed", self.validate("--finished").stdout)
         self.finished("ss316-0.6m-s-208w", 100e-6)  # measured: 93.6 um
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 0, done.stdout)
@@ -48,6 +49,25 @@ class Welds(Scratch):
         done = self.validate("--finished")
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertIn("4 rows judged: 2 passed, 2 failed", done.stdout)
+
+    def test_nothing_finished_is_no_success(self):
+        results = self.folder / "results.json"
+        done = self.validate("--finished", "--json", results)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn(f"no finished run in {self.folder / 'runs' / 'keyhole_depth_xray'}\n", done.stderr)
+        self.assertFalse(results.exists())
+        self.finished("ss316-0.6m-s-208w", 100e-6)
+        done = self.validate("--finished", "--json", results)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(json.loads(results.read_text(encoding="utf-8"))["rows"]), 1)
+
+    def test_commands_can_be_pasted(self):
+        done = meltray("validate", "keyhole_depth_xray", "--out", self.folder / "my runs", "--commands")
+        for line in done.stdout.splitlines():
+            words = shlex.split(line)
+            self.assertEqual(words[:2], ["meltray", "run"])
+            out = words[words.index("--out") + 1]
+            self.assertEqual(pathlib.Path(out).parent, self.folder / "my runs" / "keyhole_depth_xray")
 
     def test_only_welds_have_commands(self):
         done = meltray("validate", "fresnel_angles", "--commands")

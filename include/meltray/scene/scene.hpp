@@ -66,10 +66,10 @@ struct Domain {
   double smoothing_ratio = 1.3;  ///< h / spacing
   KernelType kernel = KernelType::wendland_c2;
   Arrangement arrangement = Arrangement::lattice;
-  double jitter = 0;          ///< displacement of the lattice points, fraction of the spacing
-  int seed = 1;               ///< of the jitter
-  double gravity = constants::standard_gravity;   ///< downwards [m/s^2]
-  std::array<Face, 6> faces;  ///< x_min, x_max, y_min, y_max, z_min, z_max
+  double jitter = 0;  ///< displacement of the lattice points, fraction of the spacing
+  int seed = 1;       ///< of the jitter
+  double gravity = constants::standard_gravity;  ///< downwards [m/s^2]
+  std::array<Face, 6> faces;                     ///< x_min, x_max, y_min, y_max, z_min, z_max
   std::vector<Body> bodies;
   VelocityField velocity_field = VelocityField::none;
   double velocity_scale = 0;  ///< amplitude of velocity_field [m/s]

@@ -45,9 +45,9 @@ struct Recoil {
   double pressure(const Material& m, double temperature, double t, double r2 = 0) const;
 };
 
-/// The average of `pressure` over the melt at the surface near each particle (weights surface_j W_ij), so that
-/// one overheated particle does not pull its neighbours apart; one entry per patch particle. Dry solid has no
-/// part in it: what it took of recoil and tension beside a line of contact nothing would give back.
+/// The average of `pressure` over the melt at the surface near each particle (weights surface_j W_ij), so
+/// that one overheated particle does not pull its neighbours apart; one entry per patch particle. Dry solid
+/// has no part in it: what it took of recoil and tension beside a line of contact nothing would give back.
 void average_over_surface(const Stage& stage, const std::vector<double>& pressure,
                           std::vector<double>& average);
 

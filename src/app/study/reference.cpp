@@ -12,8 +12,8 @@ scene::Scene Job::scene(const scene::Overrides& overrides) const {
   constexpr double kTight = 1e-3;
   scene::Scene s = scene::read_case(case_file, overrides);
   if (s.time.integrator.fixed_step > 0)
-    for (double* tolerance :
-         {&s.time.rtol, &s.time.atol_position, &s.time.atol_velocity, &s.time.atol_temperature, &s.time.atol_density})
+    for (double* tolerance : {&s.time.rtol, &s.time.atol_position, &s.time.atol_velocity,
+                              &s.time.atol_temperature, &s.time.atol_density})
       *tolerance *= kTight;
   return s;
 }

@@ -76,6 +76,7 @@ int study(const StudyArguments& a) {
           : repository_folder("validation", "MELTRAY_VALIDATION") / "studies" / (known.id + ".toml");
   scene::read_case(case_file);  // a bad file is refused before there is a folder
   studies::Cells cells(out / "cells");
+  if (a.json) observe::check_writable(*a.json);  // not after hours; the folder may be that of the results
   const studies::StudyScene definition =
       own && a.kind != "stability" ? studies::own_case_in_steps(case_file, cells) : known;
   const studies::Job job{definition, case_file, a.small, cells};
@@ -90,7 +91,7 @@ int study(const StudyArguments& a) {
   const fs::path data = out / (stem + ".json");
   observe::replace_file(data, text);
   observe::replace_file(out / (stem + ".csv"), csv(found.rows));
-  if (a.json) observe::replace_file(*a.json, text);
+  if (a.json) observe::write_file(*a.json, text);
   fmt::print("{} runs, {} of them kept from before; {}/{}.csv\n", cells.computed() + cells.kept(),
              cells.kept(), out.string(), stem);
   return run_script("plot_study.py", {data.string()});

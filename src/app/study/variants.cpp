@@ -110,11 +110,14 @@ scene::Overrides fixed_step(double step) {
 }
 
 scene::Overrides tolerances(const scene::Scene& s, double factor) {
-  return {"time.fixed_step_s=0", fmt::format("time.rtol={}", std::min(0.5, factor * s.time.rtol)),
-          fmt::format("time.atol_position={}", factor * s.time.atol_position),
-          fmt::format("time.atol_velocity_m_s={}", factor * s.time.atol_velocity),
-          fmt::format("time.atol_temperature_k={}", factor * s.time.atol_temperature),
-          fmt::format("time.atol_density={}", factor * s.time.atol_density)};
+  scene::Overrides all = {"time.fixed_step_s=0",
+                          fmt::format("time.rtol={}", std::min(0.5, factor * s.time.rtol)),
+                          fmt::format("time.atol_position={}", factor * s.time.atol_position),
+                          fmt::format("time.atol_velocity_m_s={}", factor * s.time.atol_velocity),
+                          fmt::format("time.atol_temperature_k={}", factor * s.time.atol_temperature)};
+  if (s.flow.solver == scene::FlowSolver::wcsph)
+    all.push_back(fmt::format("time.atol_density={}", factor * s.time.atol_density));
+  return all;
 }
 
 Variant reference_variant(const scene::Scene& s, const std::string& model) {

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "meltray/core/errors.hpp"
+#include "meltray/observe/files.hpp"
 #include "meltray/observe/version.hpp"
 
 namespace meltray::app {
@@ -71,10 +70,7 @@ void write_json(const std::filesystem::path& file, const Rows& rows) {
                                    {"version", observe::version()},
                                    {"passed", passed},
                                    {"rows", list}};
-  std::ofstream out(file);
-  out << document.dump(2) << '\n';
-  out.close();
-  if (!out) throw IoError(fmt::format("{}: cannot be written", file.string()));
+  observe::write_file(file, document.dump(2) + '\n');
 }
 
 }  // namespace meltray::app

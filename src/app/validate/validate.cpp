@@ -12,6 +12,7 @@
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/core/nearest.hpp"
+#include "meltray/observe/files.hpp"
 #include "meltray/observe/run_folder.hpp"
 
 namespace meltray::app {
@@ -49,6 +50,30 @@ std::vector<const ValidationCase*> selected(const ValidateArguments& arguments) 
       throw UsageError(fmt::format("validate: --commands and --finished: found {}{}; allowed welds of tier 3",
                                    c->id, arguments.small ? " with --small" : ""));
   return out;
+}
+
+/// What a case is run with; `references` is the folder of all validation cases.
+Setting setting_of(const ValidationCase& c, const std::filesystem::path& references,
+                   const ValidateArguments& arguments) {
+  return {references / c.id, arguments.small, arguments.out / c.id};
+}
+
+bool any_reached(const std::vector<ListedRun>& welds) {
+  return std::any_of(welds.begin(), welds.end(), [](const ListedRun& weld) {
+    return reached(weld, observe::recorded_summary(weld.folder));
+  });
+}
+
+/// --finished where nothing has finished is a mistyped folder: to compare nothing is no success.
+void check_finished(const std::vector<const ValidationCase*>& cases, const std::filesystem::path& references,
+                    const ValidateArguments& arguments) {
+  std::vector<std::string> folders;
+  for (const ValidationCase* c : cases) {
+    const Setting setting = setting_of(*c, references, arguments);
+    if (any_reached(c->welds(setting))) return;
+    folders.push_back(setting.out.string());
+  }
+  throw UsageError(fmt::format("validate: --finished: no finished run in {}", fmt::join(folders, ", ")));
 }
 
 /// Does the welds of a case that are not done, or prints their commands. Returns an exit code.
@@ -101,11 +126,13 @@ int validate(const ValidateArguments& arguments) {
     return kExitOk;
   }
   const auto folder = repository_folder("validation", "MELTRAY_VALIDATION");
+  if (arguments.finished) check_finished(cases, folder, arguments);
+  if (arguments.json) observe::check_writable(*arguments.json);  // not after hours of runs
   const KnownFailures known(folder / "known_failures.toml");
   Rows all;
   if (!arguments.commands) print_header();
   for (const ValidationCase* c : cases) {
-    const Setting setting{folder / c->id, arguments.small, arguments.out / c->id};
+    const Setting setting = setting_of(*c, folder, arguments);
     if (const int code = work_off(*c, setting, arguments); code != kExitOk) return code;
     if (arguments.commands) continue;
     Rows rows = run_case(*c, setting);

@@ -188,7 +188,8 @@ TEST_CASE("surface tension: dry solid beside the melt takes nothing off its surf
                 [&](const Vec3& x) { s.add(x, x[0] < 10 * kDx ? 2000 : 300, x[0] < 10 * kDx); });
   s.prepare(Vec3::Constant(-3 * kDx), Vec3(23 * kDx, 11 * kDx, 0));
   std::vector<double> recoil(s.patch.size()), average;
-  for (Index i = 0; i < s.patch.size(); ++i) recoil[i] = s.patch.liquid[i] && s.stage.surface[i] > 0 ? 5e4 : 0.0;
+  for (Index i = 0; i < s.patch.size(); ++i)
+    recoil[i] = s.patch.liquid[i] && s.stage.surface[i] > 0 ? 5e4 : 0.0;
   terms::average_over_surface(s.stage, recoil, average);
   int beside = 0;
   for (Index i = 0; i < s.patch.size(); ++i) {
