@@ -190,6 +190,9 @@ void RunLoop::start() {
                   1e3 * options_.end));
   write_summary("running", 0);
   if (snapshots_.count() == 0) write_snapshot();
+  if (row_time_ < 0 && start_time_ > 0)
+    warn(fmt::format("{} was missing or empty: it begins at t = {:.6g} ms",
+                     folder_.file("history.csv").string(), 1e3 * start_time_));
   if (row_time_ < 0) write_row();
 }
 

@@ -118,13 +118,24 @@ void cut_history(const fs::path& file, double time) {
   if (!text.starts_with(header))
     throw UsageError(fmt::format("{}:1: the columns are not those of this program (schema {})", file.string(),
                                  kHistorySchema));
-  std::size_t keep = header.size();
-  while (keep < text.size()) {
-    const auto end = text.find('\n', keep);
+  std::size_t keep = header.size(), damaged = 0;  // end of the rows that stay; line that is no row
+  for (std::size_t at = keep, line = 2; at < text.size(); ++line) {
+    const auto end = text.find('\n', at);
     if (end == std::string::npos) break;
     double t = 0;
-    if (!number(text.substr(keep, text.find(',', keep) - keep), t) || t > time) break;
-    keep = end + 1;
+    if (!number(text.substr(at, text.find(',', at) - at), t)) {
+      if (damaged == 0) damaged = line;
+    } else if (t > time) {
+      break;
+    } else if (damaged > 0) {
+      throw UsageError(
+          fmt::format("{}:{}: no row of numbers, with rows that are kept behind it; mend it or move "
+                      "the file away",
+                      file.string(), damaged));
+    } else {
+      keep = end + 1;
+    }
+    at = end + 1;
   }
   if (keep != text.size()) replace_file(file, std::string_view(text).substr(0, keep));
 }

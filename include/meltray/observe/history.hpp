@@ -54,8 +54,9 @@ std::string history_header();
 /// Numbers in the shortest form that reads back to the same bits.
 std::string history_line(const HistoryRow& row);
 
-/// Cuts off rows later than `time` [s] and a last line that is not complete. Throws UsageError when the
-/// header is not that of this program, IoError when the file cannot be read or replaced.
+/// Cuts off rows later than `time` [s] and lines at the end that are not complete. Throws UsageError when the
+/// header is not that of this program or a line before the last row that stays is damaged, IoError when the
+/// file cannot be read or replaced.
 void cut_history(const std::filesystem::path& file, double time);
 
 /// Columns of a history.csv by name. Throws UsageError with file and line.

@@ -57,6 +57,17 @@ TEST_CASE("history.csv is cut after the checkpoint") {
     cut_history(file, 1e-5);
     CHECK(read_text(file) == kept);
   }
+  SECTION("lines at the end that are no rows go") {
+    replace_file(file, kept + "!!!\n" + line_at(2e-5) + "\n");
+    cut_history(file, 1e-5);
+    CHECK(read_text(file) == kept);
+  }
+  SECTION("a damaged line before rows that stay is refused, and nothing is lost") {
+    const std::string text = head + line_at(0) + "\n!!!\n" + line_at(1e-5) + "\n";
+    replace_file(file, std::string_view(text));
+    CHECK_THROWS_WITH(cut_history(file, 1e-5), Catch::Contains("history.csv:3: no row of numbers"));
+    CHECK(read_text(file) == text);
+  }
   SECTION("foreign columns are refused") {
     replace_file(file, std::string_view("a,b\n1,2\n"));
     CHECK_THROWS_AS(cut_history(file, 1), UsageError);
