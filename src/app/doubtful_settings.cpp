@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "meltray/scene/body_bounds.hpp"
+#include "meltray/scene/lattice_layers.hpp"
 
 namespace meltray::app {
 namespace {
@@ -27,8 +28,7 @@ void faces_between_layers(const Domain& domain, std::vector<std::string>& found)
     const Body& body = domain.bodies[k];
     if (body.shape != ShapeKind::box) continue;
     for (int c = 0; c < domain.dimension; ++c) {
-      const double length = domain.max[c] - domain.min[c],
-                   layer = length / std::round(length / domain.spacing);
+      const double layer = scene::layer_height(domain, c);
       for (const auto& [name, face] : {std::pair{"min_m", body.min[c]}, {"max_m", body.max[c]}}) {
         if (face <= domain.min[c] || face >= domain.max[c]) continue;
         const double end = domain.min[c] + layer * std::round((face - domain.min[c]) / layer);

@@ -2,7 +2,6 @@
 #include "app/response.hpp"
 
 #include "meltray/core/errors.hpp"
-
 #include "meltray/observe/harmonics.hpp"
 
 namespace meltray::app {
@@ -12,8 +11,8 @@ DepthResponse depth_response(const History& history, const std::string& column, 
   const auto& t = history.at("time_s");
   const auto power = observe::analyse_periods(t, history.at("laser_power_w"), frequency);
   const auto depth = observe::analyse_periods(t, history.at(column), frequency);
-  // The amplitude of the drive is taken in the same way as that of the response. m/W is 1e6 mm/kW.
   if (!(power.half_range > 0)) throw UsageError("the power of the laser does not change over the periods");
+  // The amplitude of the drive is taken in the same way as that of the response. m/W is 1e6 mm/kW.
   DepthResponse r;
   r.periods = depth.periods;
   r.half_range_ratio = 1e6 * depth.half_range / power.half_range;

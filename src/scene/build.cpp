@@ -6,6 +6,7 @@
 #include "meltray/core/constants.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/scene/elastic.hpp"
+#include "meltray/scene/lattice_layers.hpp"
 
 namespace meltray::scene {
 
@@ -69,7 +70,7 @@ void for_sites(const Domain& domain, F&& f) {
   const double dx = domain.spacing;
   if (domain.arrangement != Arrangement::rotated) {
     std::array<std::int64_t, 3> count{1, 1, 1};
-    for (int c = 0; c < dim; ++c) count[c] = std::llround((domain.max[c] - domain.min[c]) / dx);
+    for (int c = 0; c < dim; ++c) count[c] = layers_along(domain, c);
     for (std::int64_t i = 0; i < count[0]; ++i)
       for (std::int64_t j = 0; j < count[1]; ++j)
         for (std::int64_t k = 0; k < count[2]; ++k) {
@@ -102,15 +103,12 @@ void for_sites(const Domain& domain, F&& f) {
       }
 }
 
-/// Volume of a site [m^3; m^2 in 2-D]: where the box is no multiple of the spacing its sites are spread
-/// evenly over it, and bodies keep their mass.
+/// Volume of a site [m^3; m^2 in 2-D]. That of the spacing would give bodies another mass where layers are
+/// spread over the box.
 double site_volume(const Domain& domain) {
   double volume = 1;
-  for (int c = 0; c < domain.dimension; ++c) {
-    const double length = domain.max[c] - domain.min[c];
-    volume *= domain.arrangement == Arrangement::rotated ? domain.spacing
-                                                         : length / std::round(length / domain.spacing);
-  }
+  for (int c = 0; c < domain.dimension; ++c)
+    volume *= domain.arrangement == Arrangement::rotated ? domain.spacing : layer_height(domain, c);
   return volume;
 }
 
@@ -151,7 +149,7 @@ void for_dummies(const Domain& domain, const terms::SceneConstants& k, F&& f) {
   const int layers = static_cast<int>(std::ceil(2 * k.smoothing / k.spacing)), dim = k.dim;
   std::array<std::int64_t, 3> count{1, 1, 1}, low{0, 0, 0}, high{1, 1, 1};
   for (int c = 0; c < dim; ++c) {
-    count[c] = std::llround((domain.max[c] - domain.min[c]) / k.spacing);
+    count[c] = layers_along(domain, c);
     low[c] = 0;
     high[c] = count[c];
   }
@@ -207,12 +205,13 @@ void set_densities(const Scene& scene, const terms::SceneConstants& k, Particles
   out.density.assign(out.size(), k.density);
   if (!scene.flow.thermal_expansion) return;
   const bool elastic = is_elastic(scene);
+  const double volume = site_volume(scene.domain);
   const double solid =
       elastic ? elastic_solid(scene).reference_density(k, scene.heat.initial_temperature) : k.density;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!out.is_liquid(i) && !elastic) continue;
     out.density[i] = out.is_liquid(i) ? scene.material.density_of_t(out.temperature[i]) : solid;
-    out.mass[i] = out.density[i] * site_volume(scene.domain);
+    out.mass[i] = out.density[i] * volume;
   }
 }
 

@@ -78,10 +78,8 @@ std::string Model::blame_heat(Index i) {
     sources.emplace_back(heating_[i], name);
   };
   terms::Crossings ignored;
-  if (scene_.terms.conduction) {
-    conduction_.assemble(stage);
-    source("conduction", [&](double* heating) { conduction_.add_heating(stage, heating); });
-  }
+  if (scene_.terms.conduction)
+    source("conduction", [&](double* heating) { conduction_operator().add_heating(stage, heating); });
   if (scene_.terms.evaporation || scene_.terms.radiation)
     source("evaporation and radiation",
            [&](double* heating) { losses_.add_heating(stage, heating, ignored); });

@@ -213,18 +213,19 @@ void Simulation::Impl::check(const StepReport& report) {
     first = *std::find_if(which->begin(), which->end(), bad);
   }
   if (first < 0) return;
+  const bool cold = p.h[first] < coldest;
   std::string text = fmt::format(
       "particle {} is {} at t = {:.9g} s (step {:.3g} s): position ({:.6g}, {:.6g}, "
       "{:.6g}) m, "
       "velocity ({:.4g}, {:.4g}, {:.4g}) m/s, enthalpy {:.5g} J/kg, {} neighbours, pressure {:.4g} Pa, "
       "surface "
       "pressure {:.4g} Pa",
-      p.global[first], p.h[first] < coldest ? "colder than 0 K" : "not finite or runs away", report.t,
-      report.dt, p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0, p.v[0][first], p.v[1][first],
+      p.global[first], cold ? "colder than 0 K" : "not finite or runs away", report.t, report.dt,
+      p.x[0][first], p.x[1][first], dim == 3 ? p.x[2][first] : 0.0, p.v[0][first], p.v[1][first],
       dim == 3 ? p.v[2][first] : 0.0, p.h[first], model.pairs.count(first), p.pressure[first],
       model.needs_pairs() ? model.stage.surface_pressure[first] : 0.0);
   const Index particle = p.global[first];
-  const bool of_heat = !(std::abs(p.h[first]) < kHottest) || p.h[first] < coldest;
+  const bool of_heat = !(std::abs(p.h[first]) < kHottest) || cold;
   lists_valid = false;
   select();
   model.evaluate_patch(time);

@@ -347,17 +347,17 @@ class NumericalFailures(Scratch):
         self.assertGreater(summary(back)["limiter"]["acoustic"], summary(folder)["limiter"]["acoustic"])
 
     def test_unstable_conduction(self):
-        """Explicit conduction far beyond its stability limit ends at the first particle whose enthalpy runs away. Only forces
-        are named: that conduction did it shows in the numbers of a particle that does not move."""
+        """Explicit conduction far beyond its stability limit ends at the first particle whose enthalpy runs away, here
+        below that of 0 K. Only forces are named: that conduction did it shows in the numbers of a particle that does not
+        move."""
         folder = self.folder / "run"
         done = meltray("run", REPOSITORY / "cases" / "melting_block.toml", "--out", folder, "--quiet", "--set",
                        "time.fixed_step_s=1e-4", "--set", "splitting.conduction=explicit")
         self.assertEqual(done.returncode, 3, done.stderr)
-        found = re.search(r"particle \d+ is (?:not finite or runs away|colder than 0 K) at t = \S+ s .* velocity \(0, 0, 0\) m/s, "
+        found = re.search(r"particle \d+ is colder than 0 K at t = \S+ s .* velocity \(0, 0, 0\) m/s, "
                           r"enthalpy (\S+) J/kg", done.stderr)
         self.assertTrue(found, done.stderr)
-        enthalpy = float(found[1])
-        self.assertTrue(enthalpy < 0 or enthalpy > 1e8, enthalpy)
+        self.assertLess(float(found[1]), 0)
         # The state that is kept is the one before: hot, and not yet beyond a particle that runs away.
         self.assertLess(history(folder)["max_temperature_k"].max(), 1e5)
         self.assertTrue(state(folder), "a checkpoint of the last good state")

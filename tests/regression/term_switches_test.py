@@ -349,11 +349,11 @@ class Weld(Switches):
         self.assertEqual(without["budgets"]["momentum"]["surface"], [0, 0, 0])
 
     def test_interface_viscosity_holds_the_melt_back(self):
-        """Several hundred times the viscosity of iron in a film of one particle: without it the melt is half as
-        fast again or more (here twice)."""
-        held, _ = self.weld("time.end_s=1e-4")
-        free, _ = self.weld("terms.interface_viscosity=false", "time.end_s=1e-4")
-        self.assertGreater(free["max_speed_m_s"].mean(), 1.5 * held["max_speed_m_s"].mean())
+        """Several hundred times the viscosity of iron in a film of one particle: without it the melt is twice as fast or
+        more."""
+        held, _ = self.weld("time.end_s=2e-4")
+        free, _ = self.weld("terms.interface_viscosity=false", "time.end_s=2e-4")
+        self.assertGreater(free["max_speed_m_s"].mean(), 2 * held["max_speed_m_s"].mean())
 
 
 if __name__ == "__main__":
