@@ -209,9 +209,10 @@ class CommandLine {
 
   void add_compare() {
     auto* c = app_.add_subcommand("compare", "Compares simulated with measured depth ratios");
-    c->add_option("RUNDIR", folders_, "Run folders")->required();
-    c->add_option("--measured", measured_, "CSV of measurements")->required();
-    c->callback([this] { command_ = [this] { return compare(folders_, measured_); }; });
+    c->add_option("RUNDIR", compare_.run_folders, "Run folders")->required();
+    c->add_option("--measured", compare_.measured, "CSV of measurements")->required();
+    c->add_option("--json", compare_.json, "Write the results to this file as well")->check(kNamed);
+    c->callback([this] { command_ = [this] { return compare(compare_); }; });
   }
 
   void add_list() {
@@ -236,7 +237,7 @@ class CommandLine {
   StudyArguments study_;
   PaperArguments paper_;
   std::vector<std::filesystem::path> folders_;
-  std::filesystem::path measured_;
+  CompareArguments compare_;
   std::string what_;
 };
 

@@ -13,6 +13,7 @@
 #include "meltray/app/commands.hpp"
 #include "meltray/core/errors.hpp"
 #include "meltray/scene/case_file.hpp"
+#include "meltray/scene/memory_needed.hpp"
 
 namespace meltray::app {
 
@@ -23,6 +24,8 @@ int run(const RunArguments& arguments) {
   if (!(end > 0) || !std::isfinite(end))
     throw UsageError(fmt::format("--until {}: a finite time after 0 is needed [s]", end));
   scene.time.end = std::max(scene.time.end, end);
+
+  scene::refuse_more_than_memory_holds(scene);
 
   observe::RunFolder::Options where;
   where.out = arguments.out;

@@ -7,6 +7,7 @@
 #include "meltray/core/errors.hpp"
 #include "meltray/scene/elastic.hpp"
 #include "meltray/scene/lattice_layers.hpp"
+#include "meltray/scene/memory_needed.hpp"
 
 namespace meltray::scene {
 
@@ -247,6 +248,7 @@ terms::SceneConstants build_constants(const Scene& scene) {
 Particles build_particles(const Scene& scene, const terms::SceneConstants& constants) {
   Particles out;
   out.dim = constants.dim;
+  refuse_more_than_memory_holds(scene);
   // Most particles of a weld sleep in these arrays: they are made as long as needed, and no longer.
   out.reserve(count_in_bodies(scene.domain) + count_dummies(scene.domain, constants));
   add_bodies(scene, constants, out);

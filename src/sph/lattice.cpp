@@ -7,8 +7,51 @@
 
 namespace meltray::sph {
 
+namespace {
+
+/// Sum of V W over one layer of the lattice, from a point over one of its sites.
+double layer_sum(KernelType kernel, int dim, double spacing, double smoothing, double height) {
+  const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
+  const double volume = std::pow(spacing, dim), inv_h = 1 / smoothing;
+  double sum = 0;
+  with_dim(dim, [&](auto d) {
+    with_kernel<d>(kernel, [&](auto k) {
+      using Kernel = decltype(k);
+      for (int a = -reach; a <= reach; ++a)
+        for (int b = dim == 3 ? -reach : 0; b <= (dim == 3 ? reach : 0); ++b)
+          sum += volume * Kernel::w(std::hypot(height, a * spacing, b * spacing), inv_h);
+    });
+  });
+  return sum;
+}
+
+}  // namespace
+
+FaceDistance::FaceDistance(KernelType kernel, int dim, double spacing, double smoothing) {
+  const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
+  double full = 0;
+  for (int layer = -reach; layer <= reach; ++layer)
+    full += layer_sum(kernel, dim, spacing, smoothing, layer * spacing);
+  // Colour at a height over the face, by bisection: it falls with the height.
+  const auto colour = [&](double height) {
+    double sum = 0;
+    for (int layer = 0; layer <= reach; ++layer)
+      sum += layer_sum(kernel, dim, spacing, smoothing, height + (layer + 0.5) * spacing);
+    return sum / full;
+  };
+  for (int k = 0; k < kPoints; ++k) {
+    const double at = 0.5 * std::pow(k / (kPoints - 1.0), 2);
+    double low = 0, high = 2 * smoothing - 0.5 * spacing;
+    for (int halving = 0; halving < 40; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (colour(middle) > at ? low : high) = middle;
+    }
+    distance_[k] = 0.5 * (low + high);
+  }
+}
+
 LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoothing) {
-  LatticeSums sums{0, 0, 0, 0, 0, 0, 0, 0, 0};
+  LatticeSums sums{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, FaceDistance(kernel, dim, spacing, smoothing)};
   const int reach = static_cast<int>(std::ceil(2 * smoothing / spacing));
   const double volume = std::pow(spacing, dim), inv_h = 1 / smoothing;
   double face = 0;
@@ -22,6 +65,7 @@ LatticeSums lattice_sums(KernelType kernel, int dim, double spacing, double smoo
             const double w = volume * Kernel::w(r, inv_h);
             sums.shepard += w;
             if (a <= 0) sums.face_fill += w;
+            if (a == 0) sums.layer_spread += w * r * r;
             if (r == 0) continue;
             sums.neighbours += w > 0;
             const double f = volume * Kernel::f(r, inv_h);

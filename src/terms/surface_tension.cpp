@@ -7,6 +7,12 @@ namespace meltray::terms {
 
 namespace {
 
+/// Share of a flat layer's sum of W t^2 (t the distance in the tangent plane) that a particle with fewer
+/// neighbours beside it is taken to have. A particle with one at its own spacing has more; one with a
+/// neighbour behind it only would bend without bounds as t goes to 0 (4e4 times the curvature of its drop
+/// were seen at a torn rim), though two particles have no curvature.
+constexpr double kLeastSpread = 0.2;
+
 template <int D>
 void normalise(std::array<double, D>& v) {
   double norm = 0;
@@ -80,8 +86,7 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
     const ConstField n = view(static_cast<const Components&>(smooth_));
     const double* const surface = s.surface.data();
     const std::uint8_t* const melt = s.patch->liquid.data();
-    // Of sum_j W t^2, t the distance in the tangent plane: none where a particle has no neighbour beside it.
-    const double tiny = 1e-12 * std::pow(s.constants->spacing, 2 - D);
+    const double least = kLeastSpread * s.constants->lattice.layer_spread / std::pow(s.constants->spacing, D);
     parallel_for(s.size(), [&](Index i) {
       out[i] = 0;
       const double active = s.surface[i] > 0 ? activation(s, i) : 0.0;
@@ -99,7 +104,7 @@ void SurfaceTension::pressure(const Stage& s, std::vector<double>& out) const {
         const sph::Lanes weight = p.of(surface) * p.of(melt) * p.w;
         return std::array<sph::Lanes, 2>{weight * bend, weight * t2};
       });
-      const double kappa = sum[1] > tiny ? (D - 1) * sum[0] / sum[1] : 0.0;
+      const double kappa = (D - 1) * sum[0] / std::max(sum[1], least);
       out[i] = active * s.constants->material.sigma(s.temperature[i]) * kappa;
     });
   });

@@ -25,6 +25,35 @@ double no_slip_factor(const Stage& s, Index i, Index j) {
   return 1 + std::abs(s.patch->x[face.axis][j] - face.plane) / di;
 }
 
+/// Lets the velocity vanish at the face of the solid beside melt particle i, not at the centres of its
+/// outermost particles half a spacing behind: the profile continues into the solid as behind a wall. Where
+/// the face lies is told by the solid's colour and its gradient, as for a flat one.
+template <int D>
+void extend_into_solid(const Stage& s, Index i, float* c) {
+  const std::uint8_t *const liquid = s.patch->liquid.data(), *const wall = s.patch->wall.data();
+  const double* const volume = s.volume.data();
+  const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::PairLanes<D>& p) {
+    sph::Lanes v = p.of(volume);
+    where(p.of(liquid) + p.of(wall) > 0, v) = 0;
+    std::array<sph::Lanes, D + 1> out;
+    out[0] = v * p.w;
+    for (int k = 0; k < D; ++k) out[1 + k] = v * p.f * p.x[k];
+    return out;
+  });
+  double norm = 0;
+  for (int k = 0; k < D; ++k) norm += sum[1 + k] * sum[1 + k];
+  if (sum[0] <= 0 || norm == 0) return;
+  norm = std::sqrt(norm);
+  const sph::LatticeSums& lattice = s.constants->lattice;
+  const double height = std::max(lattice.face_distance(sum[0] / lattice.shepard), 0.5 * s.constants->spacing);
+  s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
+    if (liquid[p.j] || wall[p.j]) return;
+    double down = 0;  // from i to j, along the normal into the solid: the gradient of its colour
+    for (int k = 0; k < D; ++k) down -= p.x[k] * sum[1 + k] / norm;
+    c[p.k] *= static_cast<float>(std::max(down / height, 1.0));
+  });
+}
+
 }  // namespace
 
 void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
@@ -66,8 +95,10 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
       if (choice_.physical) {
         const double mu_i = mu[i];
         // A solid or wall neighbour has the viscosity of the melt beside it.
+        bool at_solid = false;
         pairs.for_lanes<D>(i, [&](const sph::PairLanes<D>& p) {
           sph::Lanes mu_j = p.of(mu);
+          at_solid |= any_of(mu_j < 0);
           where(mu_j < 0, mu_j) = mu_i;
           sph::store(c + p.k, scale * (vi * p.of(volume)) * p.f * (2 * mu_i * mu_j / (mu_i + mu_j)));
         });
@@ -77,6 +108,7 @@ void ViscousOperator::assemble(const Stage& s, ViscousChoice choice,
             const WallFace& face = s.constants->faces[s.patch->wall[p.j] - 1];
             c[p.k] *= static_cast<float>(face.no_slip ? no_slip_factor(s, i, p.j) : 0.0);
           });
+        if (at_solid) extend_into_solid<D>(s, i, c);
         sph::Lanes sum = 0;
         for (Index k = pairs.begin(i); k < pairs.filled_end(i); k += sph::kLaneCount) sum -= sph::load(c + k);
         c_sum_[i] = sph::sum(sum);

@@ -4,6 +4,7 @@
 
 usage: exit_codes_test.py PROGRAM [unittest options]
 """
+import json
 import os
 import re
 import signal
@@ -137,6 +138,27 @@ class Usage(Scratch):
         done = meltray("compare", folder, folder, "--measured", measured)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("run ")]), 3)
+
+    def test_compare_writes_what_it_prints(self):
+        sine = [item for key in ('laser.modulation="sine"', "laser.amplitude_w=300", "laser.frequency_hz=1e5",
+                                 "output.interval_s=1e-6", "time.max_step_s=1e-6") for item in ("--set", key)]
+        folder = run(WELD, self.folder / "run", "--until", "4e-5", *sine)
+        measured = self.write("measured.csv", "material,f_hz,mean_depth_mm,amplitude_ratio_mm_per_kw,definition\n"
+                              "Iron,1e5,2,0.5,First Harmonic\niron,100,2,0.5,\n")
+        results = self.folder / "compared.json"
+        done = meltray("compare", folder, "--measured", measured, "--json", results)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        compared, = json.loads(results.read_text(encoding="utf-8"))["runs"]
+        row, = compared["measured"]  # that of its frequency
+        self.assertEqual(row["amplitude"], "harmonic")
+        for depth, values in compared["depths"].items():
+            self.assertEqual(values["periods"], 3)
+            line, = [line for line in done.stdout.splitlines() if f" {depth} " in line and "period" in line]
+            self.assertIn(f"{values['mean_mm']:.3f}", line)
+            over = row["simulated_over_measured"][depth]
+            self.assertAlmostEqual(over["mean"], values["mean_mm"] / 2)
+            self.assertAlmostEqual(over["ratio"], values["harmonic_mm_per_kw"] / 0.5)
+            self.assertIsNone(over["lag_difference_deg"])
 
 
 class Folders(Scratch):

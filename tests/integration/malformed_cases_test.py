@@ -118,6 +118,8 @@ TABLE = [
          "case.toml:31: time.order: found 6; allowed an integer from 1 to 5"),
     edit("range", "below absolute zero", 'shape = "box"', 'shape = "box"\ntemperature_k = -20',
          "case.toml:13: bodies.0.temperature_k: found -20; allowed a number > 0", "[K]"),
+    edit("range", "more particles than memory", "spacing_m = 5e-5", "spacing_m = 7.7e-7",
+         "domain.spacing_m: found 7.7e-07, at least ", "GB of memory; allowed: a spacing of "),
     edit("range", "too many particles", "spacing_m = 5e-5", "spacing_m = 1e-9", "case.toml:6: domain.spacing_m: found ",
          "particles", "allowed "),
 

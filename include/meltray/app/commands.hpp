@@ -63,6 +63,12 @@ struct PaperArguments {
   int threads = 0;
 };
 
+struct CompareArguments {
+  std::vector<std::filesystem::path> run_folders;
+  std::filesystem::path measured;  ///< CSV
+  std::optional<std::filesystem::path> json;
+};
+
 int run(const RunArguments& arguments);
 int resume(const ResumeArguments& arguments);
 int check(const std::filesystem::path& case_file, const std::vector<std::string>& set);
@@ -72,6 +78,6 @@ int study(const StudyArguments& arguments);
 /// Runs what is not done yet; writes paper.csv, ratios.txt and the figures to `out`.
 int study_paper(const PaperArguments& arguments);
 int plot(const std::vector<std::filesystem::path>& run_folders);
-int compare(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& measured);
+int compare(const CompareArguments& arguments);
 
 }  // namespace meltray::app

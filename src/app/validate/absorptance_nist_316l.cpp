@@ -20,6 +20,9 @@ constexpr double kSpotRadius = 0.5 * 303e-6;  ///< [m]
 constexpr double kFlat = 0.31,
                  kOnset = 0.4;      ///< absorbed without a capillary; intensity of its start [MW/cm^2]
 constexpr double kSaturated = 0.8;  ///< intensities above it [MW/cm^2] are judged by the saturated share
+/// A capillary shows in the absorbed power, as in the experiment: when its mean over so long [s] has risen by
+/// this share over that of the flat plate.
+constexpr double kMeanOver = 50e-6, kRise = 0.1;
 
 struct Spot {
   double intensity, power, absorbed, keyhole;  ///< [MW/cm^2], [W], share, [s] (NaN: none)
@@ -37,19 +40,40 @@ std::string power_key(const Spot& s) {
   return fmt::format("laser.power_w={:.6g}", s.power);
 }
 
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+/// First time at which the mean absorbed share of the last kMeanOver has risen by kRise [s]; NaN if it never
+/// has.
+double rise_of_absorption(const std::map<std::string, std::vector<double>>& history) {
+  const auto &time = history.at("time_s"), &absorbed = history.at("absorbed_power_w"),
+             &power = history.at("laser_power_w");
+  std::size_t first = 0;
+  double light = 0, taken = 0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    light += power[i];
+    taken += absorbed[i];
+    for (; time[i] - time[first] > kMeanOver; ++first) {
+      light -= power[first];
+      taken -= absorbed[first];
+    }
+    if (time[i] >= kMeanOver && taken > (kFlat + kRise) * light) return time[i];
+  }
+  return kNever;
+}
+
 /// First time at which the void is as deep as the spot's radius [s]; NaN if it never is.
-double keyhole_time(const std::filesystem::path& folder) {
-  const auto history = observe::read_history(folder / "history.csv");
+double deep_void(const std::map<std::string, std::vector<double>>& history) {
   const auto& depth = history.at("capillary_depth_m");
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (depth[i] >= kSpotRadius) return history.at("time_s")[i];
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNever;
 }
 
 /// What one spot weld gave.
 struct Weld {
   Spot spot;
   double absorbed, keyhole;
+  double deep;  ///< time at which the void is as deep as the spot's radius [s]
 };
 
 void judge_spot(const Weld& w, const Measured& how, Rows& rows) {
@@ -64,6 +88,11 @@ void judge_spot(const Weld& w, const Measured& how, Rows& rows) {
                            w.spot.keyhole, 1, how);
   start.error = std::abs(std::log2(w.keyhole / w.spot.keyhole));
   rows.push_back(start);
+  Row deep =
+      absolute_row(fmt::format("{} MW/cm2: void as deep as the radius of the spot [s]", w.spot.intensity),
+                   w.deep, w.spot.keyhole, 0, how);
+  deep.judged = false;
+  rows.push_back(deep);
 }
 
 void judge_series(std::vector<Weld> welds, const std::string& source, Rows& rows) {
@@ -117,8 +146,9 @@ Rows absorptance_nist_316l(const Setting& setting) {
     const auto summary = observe::recorded_summary(list[k].folder);
     if (!reached(list[k], summary)) continue;
     const auto& laser = summary.at("budgets").at("laser");
+    const auto history = observe::read_history(list[k].folder / "history.csv");
     welds.push_back({measured[k], laser.at("absorbed_j").get<double>() / laser.at("in_j").get<double>(),
-                     keyhole_time(list[k].folder)});
+                     rise_of_absorption(history), deep_void(history)});
     judge_spot(
         welds.back(),
         {resolution_text(spacing_of(list[k].folder)), summary.value("wall_seconds", 0.0), table.source()},

@@ -9,8 +9,9 @@
 
 namespace meltray::app {
 
-std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides) {
-  return std::make_unique<scene::Simulation>(scene::read_case(setting.folder / "case.toml", overrides));
+std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides,
+                                         const std::string& file) {
+  return std::make_unique<scene::Simulation>(scene::read_case(setting.folder / file, overrides));
 }
 
 std::vector<Model> collapse_models() {

@@ -12,8 +12,9 @@
 
 namespace meltray::app {
 
-/// The scene of validation/<id>/case.toml with some keys changed.
-std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides = {});
+/// The scene of validation/<id>/case.toml, or of another file there, with some keys changed.
+std::unique_ptr<scene::Simulation> start(const Setting& setting, const scene::Overrides& overrides = {},
+                                         const std::string& file = "case.toml");
 
 /// A way to run a scene, and what its rows are called by.
 struct Model {

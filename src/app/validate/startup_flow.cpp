@@ -43,9 +43,9 @@ Instant compare(const Particles& p, const Profile& exact, double time, double sc
   Instant out;
   double inner = 0, all = 0, middle = 0, nearest = 1;
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (!p.is_wall(i)) nearest = std::min(nearest, std::abs(p.x[0][i] - 0.5));
+    if (p.is_liquid(i)) nearest = std::min(nearest, std::abs(p.x[0][i] - 0.5));
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_wall(i)) continue;
+    if (!p.is_liquid(i)) continue;
     const double x = p.x[0][i], u = p.v[1][i] / scale, reference = exact(x, time);
     const double square = std::pow(u - reference, 2);
     out.whole += square;
@@ -72,8 +72,24 @@ struct Flow {
   double earliest_error;  ///< pass line at nu t / H^2 = 0.01, absolute
 };
 
+std::vector<Instant> follow(scene::Simulation& simulation, const Flow& flow,
+                            const std::vector<double>& times) {
+  const Material& m = simulation.scene().material;
+  const double viscosity = m.viscosity(400) / m.density;
+  std::vector<Instant> instants;
+  for (const double time : times) {
+    advance(simulation, time / viscosity);
+    instants.push_back(compare(simulation.particles(), flow.exact, time, flow.scale));
+  }
+  return instants;
+}
+
+std::vector<int> particles_across(const Setting& setting) {
+  return setting.small ? std::vector<int>{20} : std::vector<int>{20, 40, 60};
+}
+
 Rows run(const Setting& setting, const Flow& flow) {
-  const std::vector<int> counts = setting.small ? std::vector<int>{20} : std::vector<int>{20, 40, 60};
+  const std::vector<int> counts = particles_across(setting);
   std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
   if (setting.small) times.resize(4);
   std::vector<std::vector<Instant>> runs;
@@ -81,17 +97,8 @@ Rows run(const Setting& setting, const Flow& flow) {
   for (const int count : counts) {
     const Watch watch;
     const double spacing = 1.0 / count;
-    const auto simulation = start(setting, {fmt::format("domain.spacing_m={:.17g}", spacing),
-                                            fmt::format("domain.max_m=[1.0,{:.17g}]", 12 * spacing),
-                                            fmt::format("bodies.0.max_m=[1.0,{:.17g}]", 12 * spacing)});
-    const Material& m = simulation->scene().material;
-    const double viscosity = m.viscosity(400) / m.density;
-    std::vector<Instant> instants;
-    for (const double time : times) {
-      advance(*simulation, time / viscosity);
-      instants.push_back(compare(simulation->particles(), flow.exact, time, flow.scale));
-    }
-    runs.push_back(instants);
+    const auto simulation = start(setting, strip(1, spacing));
+    runs.push_back(follow(*simulation, flow, times));
     seconds.push_back(watch.seconds());
     scales.push_back(spacing);
   }
@@ -114,12 +121,41 @@ Rows run(const Setting& setting, const Flow& flow) {
   return rows;
 }
 
+/// The same liquid between slabs of its own solid, four particles thick.
+Rows between_own_solid(const Setting& setting, const Flow& flow) {
+  const double time = setting.small ? 0.1 : 0.5;
+  Rows rows;
+  std::vector<double> scales;
+  for (const int count : particles_across(setting)) {
+    const Watch watch;
+    const double spacing = 1.0 / count, height = strip_height(spacing), slab = 4 * spacing;
+    scene::Overrides overrides{fmt::format("domain.spacing_m={:.17g}", spacing),
+                               fmt::format("domain.min_m=[{:.17g},0.0]", -slab),
+                               fmt::format("bodies.0.min_m=[{:.17g},0.0]", -slab)};
+    for (const char* box : {"domain", "bodies.0"})
+      overrides.push_back(fmt::format("{}.max_m=[{:.17g},{:.17g}]", box, 1 + slab, height));
+    overrides.push_back(fmt::format("bodies.1.max_m=[1.0,{:.17g}]", height));
+    const auto simulation = start(setting, overrides, "own_solid.toml");
+    const Instant end = follow(*simulation, flow, {time}).back();
+    rows.push_back(
+        limit_row(fmt::format("nu t/H^2 {}, between its own solid: whole profile, L2 over the maximum", time),
+                  end.whole, 0.01, {fmt::format("H/dx {}", count), watch.seconds(), "series solution"}));
+    scales.push_back(spacing);
+  }
+  Rows series;
+  add_series(series, scales, rows);
+  return series;
+}
+
 }  // namespace
 
 Rows poiseuille_startup(const Setting& setting) {
   const scene::Scene scene = scene::read_case(setting.folder / "case.toml");
   const double viscosity = scene.material.viscosity(400) / scene.material.density;
-  return run(setting, {poiseuille, -scene.domain.gravity / (8 * viscosity), 0.01});
+  const Flow flow{poiseuille, -scene.domain.gravity / (8 * viscosity), 0.01};
+  Rows rows = run(setting, flow);
+  for (const Row& row : between_own_solid(setting, flow)) rows.push_back(row);
+  return rows;
 }
 
 Rows couette_startup(const Setting& setting) {

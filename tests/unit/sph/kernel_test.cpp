@@ -97,3 +97,21 @@ TEST_CASE("lattice sums approach the integrals of the kernel as the support grow
       CHECK(s.second_moment == Approx(1).epsilon(1e-3));
     }
 }
+
+TEST_CASE("face distance: the colour of a slab of lattice tells how far over it a point lies") {
+  const double dx = 1e-4, h = 1.3 * dx, reach = 2 * h - 0.5 * dx;
+  const FaceDistance distance(KernelType::wendland_c2, 3, dx, h);
+  const double full = lattice_sums(KernelType::wendland_c2, 3, dx, h).shepard;
+  for (double height : {0.25, 0.5, 1.0, 1.5}) {
+    double sum = 0;
+    for (int i = -3; i <= 3; ++i)
+      for (int j = -3; j <= 3; ++j)
+        for (int k = 0; k <= 3; ++k)
+          sum += dx * dx * dx * WendlandC2<3>::w(dx * std::hypot(i, j, k + 0.5 + height), 1 / h);
+    CHECK(distance(sum / full) == Approx(height * dx).epsilon(2e-3));
+  }
+  CHECK(distance(0) == Approx(reach));
+  CHECK(distance(-1) == Approx(reach));
+  CHECK(std::abs(distance(0.5)) < 1e-3 * dx);
+  CHECK(distance(0.9) == distance(0.5));
+}
