@@ -24,8 +24,9 @@ struct SurfaceTension {
 
 /// Wetting after Breinlinger et al. 2013: near the triple line the normal is turned towards
 ///   n_tp = sin(theta) t_w - cos(theta) n_w,  t_w the part of n orthogonal to the wall normal n_w,
-/// over a ramp in the wall colour. Rewrites stage.normal of liquid surface particles, and stage.wall_normal,
-/// which the surface tension keeps while it averages normals.
+/// over a ramp in the wall colour. Where the surface is parallel to the wall, as that of a film which covers
+/// its solid, there is no triple line, and n stays. Rewrites stage.normal of liquid surface particles, and
+/// stage.wall_normal, which the surface tension keeps while it averages normals.
 struct Wetting {
   double contact_angle_deg = 10;
   void turn_normals(Stage& stage) const;

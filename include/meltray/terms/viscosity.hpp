@@ -31,7 +31,8 @@ struct ViscousSolve {
 ///
 /// Physical viscosity, paper Eq. (3) second term in the form of Morris et al. 1997:
 ///   c_ij = 2 V_i V_j mu_ij F_ij, mu_ij the harmonic mean, walls with the antisymmetric extrapolation of
-///   Morris 1997 (no slip).
+///   Morris 1997 (no slip). Melt clings to the face of its own solid in the same way; where that lies is told
+///   by the solid's colour (sph::FaceDistance).
 /// Interface viscosity, Meier et al. 2021: d_ij = alpha_ij V_i V_j rho h c F_ij / (r^2 + 0.01 h^2), for
 /// approach
 ///   and separation, with alpha_i = |grad c_i| h alpha_LG + ramp(T_i) alpha_SL. The published form uses
