@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/json_number.hpp"
 #include "app/measurements.hpp"
 #include "app/response.hpp"
 #include "meltray/app/commands.hpp"
@@ -108,10 +109,6 @@ void print_measured(const Simulated& s, const Measurement& m) {
                harmonic ? text(q.ratio) : "", text(q.mean), text(q.lag_difference, "{:+.1f}"),
                q.lag_difference ? "(lag: difference)" : "");
   }
-}
-
-nlohmann::json json_number(const std::optional<double>& v) {
-  return v ? nlohmann::json(*v) : nlohmann::json(nullptr);
 }
 
 /// A run with its two depths and what they are over each measurement of its metal and frequency.

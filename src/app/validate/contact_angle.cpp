@@ -212,7 +212,7 @@ Rows contact_angle(const Setting& setting) {
                     : std::vector<std::vector<double>>{{20}, {30}, {36, 38, 40, 42, 44}};
   Rows rows = drops_on(Ground::wall, setting, targets, resolutions);
   const std::vector<Target> on_solid =
-      setting.small ? std::vector<Target>{{60, 90}} : std::vector<Target>{{60, 90}, {90, 120}, {120, 90}};
+      setting.small ? std::vector<Target>{{90, 120}} : std::vector<Target>{{60, 90}, {90, 120}, {120, 90}};
   for (const Row& row : drops_on(Ground::own_solid, setting, on_solid, {resolutions.back()}))
     rows.push_back(row);
   return rows;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/json_number.hpp"
 #include "meltray/observe/files.hpp"
 #include "meltray/observe/version.hpp"
 
@@ -19,11 +20,6 @@ constexpr const char* kLine = "{:<22} {:<46} {:<13} {:>11} {:>11} {:>9} {:>9} {:
 
 std::string text(const std::optional<double>& number, const char* form) {
   return number ? fmt::format(fmt::runtime(form), *number) : "-";
-}
-
-nlohmann::json json_number(const std::optional<double>& number) {
-  if (!number || !std::isfinite(*number)) return nullptr;
-  return *number;
 }
 
 std::string verdict(const Row& r) {
