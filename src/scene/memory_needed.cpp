@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "meltray/core/errors.hpp"
+#include "meltray/scene/body_bounds.hpp"
 
 namespace meltray::scene {
 
@@ -21,12 +22,14 @@ constexpr double kBytesPerParticle = 180;
 double least_count(const Domain& domain) {
   double most = 0;
   for (const Body& b : domain.bodies) {
+    const auto [min, max] = bounds_of(b);
+    const double inscribed = b.shape == ShapeKind::box ? 1 : 1 / std::sqrt(domain.dimension);
     double count = 1;
     for (int c = 0; c < domain.dimension; ++c) {
-      const double half = b.radii[c] / std::sqrt(domain.dimension);  // of the box inscribed in a ball
-      const bool box = b.shape == ShapeKind::box;
-      const double low = box ? b.min[c] : b.center[c] - half, high = box ? b.max[c] : b.center[c] + half;
-      count *= std::max(0.0, std::min(high, domain.max[c]) - std::max(low, domain.min[c])) / domain.spacing;
+      const double middle = 0.5 * (min[c] + max[c]), half = 0.5 * inscribed * (max[c] - min[c]);
+      const double low = std::max(middle - half, domain.min[c]),
+                   high = std::min(middle + half, domain.max[c]);
+      count *= std::max(0.0, high - low) / domain.spacing;
     }
     most = std::max(most, count);
   }

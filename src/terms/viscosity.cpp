@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meltray/core/memory.hpp"
+#include "terms/solid_beside.hpp"
 
 namespace meltray::terms {
 
@@ -32,24 +33,18 @@ template <int D>
 void extend_into_solid(const Stage& s, Index i, float* c) {
   const std::uint8_t *const liquid = s.patch->liquid.data(), *const wall = s.patch->wall.data();
   const double* const volume = s.volume.data();
-  const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::PairLanes<D>& p) {
+  const SolidBeside<D> solid = solid_beside<D>(s, i, [&](const sph::PairLanes<D>& p) {
     sph::Lanes v = p.of(volume);
     where(p.of(liquid) + p.of(wall) > 0, v) = 0;
-    std::array<sph::Lanes, D + 1> out;
-    out[0] = v * p.w;
-    for (int k = 0; k < D; ++k) out[1 + k] = v * p.f * p.x[k];
-    return out;
+    return v;
   });
-  double norm = 0;
-  for (int k = 0; k < D; ++k) norm += sum[1 + k] * sum[1 + k];
-  if (sum[0] <= 0 || norm == 0) return;
-  norm = std::sqrt(norm);
-  const sph::LatticeSums& lattice = s.constants->lattice;
-  const double height = std::max(lattice.face_distance(sum[0] / lattice.shepard), 0.5 * s.constants->spacing);
+  if (solid.colour <= 0) return;
+  const double height =
+      std::max(s.constants->lattice.face_distance(solid.colour), 0.5 * s.constants->spacing);
   s.pairs->for_row<D>(i, [&](const sph::Pair<D>& p) {
     if (liquid[p.j] || wall[p.j]) return;
-    double down = 0;  // from i to j, along the normal into the solid: the gradient of its colour
-    for (int k = 0; k < D; ++k) down -= p.x[k] * sum[1 + k] / norm;
+    double down = 0;  // from i to j, into the solid
+    for (int k = 0; k < D; ++k) down -= p.x[k] * solid.into[k];
     c[p.k] *= static_cast<float>(std::max(down / height, 1.0));
   });
 }

@@ -3,6 +3,7 @@
 
 #include "meltray/core/constants.hpp"
 #include "meltray/terms/surface_forces.hpp"
+#include "terms/solid_beside.hpp"
 
 namespace meltray::terms {
 
@@ -32,24 +33,12 @@ void Wetting::turn_normals(Stage& s) const {
     parallel_for(count, [&](std::ptrdiff_t k) {
       const Index i = s.moving[k];
       if (s.surface[i] == 0) return;
-      const auto sum = s.pairs->sum_row<D, D + 1>(i, [&](const sph::PairLanes<D>& p) {
-        const sph::Lanes v = (1 - p.of(liquid)) * p.of(volume);
-        std::array<sph::Lanes, D + 1> out;
-        out[0] = v * p.w;
-        for (int c = 0; c < D; ++c) out[1 + c] = v * p.f * p.x[c];
-        return out;
-      });
-      const double colour = sum[0] / s.constants->lattice.shepard;
-      double norm = 0;
-      for (int c = 0; c < D; ++c) norm += sum[1 + c] * sum[1 + c];
-      if (colour <= 0 || norm == 0) return;
-      norm = std::sqrt(norm);
-      // n_w points from the liquid into the wall; sum V grad W of the wall points that way.
-      double nw[D], along = 0;
-      for (int c = 0; c < D; ++c) {
-        nw[c] = sum[1 + c] / norm;
-        along += s.normal[c][i] * nw[c];
-      }
+      const SolidBeside<D> wall = solid_beside<D>(
+          s, i, [&](const sph::PairLanes<D>& p) { return (1 - p.of(liquid)) * p.of(volume); });
+      if (wall.colour <= 0) return;
+      const std::array<double, D>& nw = wall.into;
+      double along = 0;
+      for (int c = 0; c < D; ++c) along += s.normal[c][i] * nw[c];
       double tangent[D], length = 0;
       for (int c = 0; c < D; ++c) {
         tangent[c] = s.normal[c][i] - along * nw[c];
@@ -58,7 +47,7 @@ void Wetting::turn_normals(Stage& s) const {
       length = std::sqrt(length);
       if (length <= kParallel) return;
       const double line = std::clamp((length - kParallel) / (kAcross - kParallel), 0.0, 1.0);
-      const double share = line * std::min(colour / kWallColourFull, 1.0);
+      const double share = line * std::min(wall.colour / kWallColourFull, 1.0);
       double mixed[D], size = 0;
       for (int c = 0; c < D; ++c) {
         const double prescribed = sine * tangent[c] / length - cosine * nw[c];

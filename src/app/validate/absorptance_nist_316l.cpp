@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/response.hpp"
 #include "app/validate/cases.hpp"
 #include "app/validate/scenes.hpp"
 #include "app/validate/table.hpp"
@@ -44,7 +45,7 @@ constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 /// First time at which the mean absorbed share of the last kMeanOver has risen by kRise [s]; NaN if it never
 /// has.
-double rise_of_absorption(const std::map<std::string, std::vector<double>>& history) {
+double rise_of_absorption(const History& history) {
   const auto &time = history.at("time_s"), &absorbed = history.at("absorbed_power_w"),
              &power = history.at("laser_power_w");
   std::size_t first = 0;
@@ -62,7 +63,7 @@ double rise_of_absorption(const std::map<std::string, std::vector<double>>& hist
 }
 
 /// First time at which the void is as deep as the spot's radius [s]; NaN if it never is.
-double deep_void(const std::map<std::string, std::vector<double>>& history) {
+double deep_void(const History& history) {
   const auto& depth = history.at("capillary_depth_m");
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (depth[i] >= kSpotRadius) return history.at("time_s")[i];
@@ -146,7 +147,7 @@ Rows absorptance_nist_316l(const Setting& setting) {
     const auto summary = observe::recorded_summary(list[k].folder);
     if (!reached(list[k], summary)) continue;
     const auto& laser = summary.at("budgets").at("laser");
-    const auto history = observe::read_history(list[k].folder / "history.csv");
+    const History history = observe::read_history(list[k].folder / "history.csv");
     welds.push_back({measured[k], laser.at("absorbed_j").get<double>() / laser.at("in_j").get<double>(),
                      rise_of_absorption(history), deep_void(history)});
     judge_spot(

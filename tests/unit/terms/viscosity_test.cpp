@@ -112,6 +112,20 @@ TEST_CASE("viscosity: a slip wall does not pull, a solid holds the melt") {
   interface.assemble(s.stage, {false, true}, {1, 1, 50, 50});
   CHECK(test::largest(test::acceleration(s, interface)) > kNu / (kDx * kDx));
   s.set_temperature([](const Vec3&) { return 2000.0; });
+
+  // Solid below z = 3 dx at rest, the melt over it in motion.
+  for (Index i = 0; i < s.patch.size(); ++i)
+    if (s.patch.x[2][i] < 3 * kDx) s.patch.liquid[i] = 0;
+  terms::prepare_stage(s.stage);
+  s.update();
+  for (Index i = 0; i < s.patch.size(); ++i) s.patch.v[0][i] = s.patch.liquid[i] ? 1.0 : 0.0;
+  const auto a = test::acceleration(s, physical(s));
+  int wrong = 0;
+  for (Index i : s.stage.moving) {
+    const double depth = s.patch.x[2][i] / kDx - 3;
+    wrong += depth < 2 ? !(a[0][i] < 0) : a[0][i] > 1e-9;
+  }
+  CHECK(wrong == 0);
 }
 
 // With the solid's particles as points where the velocity vanishes, half a spacing behind the face, melt
